@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/effect/GroundShade.h>
 #include <osgGeoFX/effect/RigidParts.h>
+#include <osgGeoFX/paging/TileGuard.h>
 
 #include <osg/Math>
 #include <osgDB/ReadFile>
@@ -25,6 +26,8 @@ namespace osgGeoFX
 class FinestGround::Tiles : public osgUtil::IntersectionVisitor::ReadCallback
 {
 public:
+    explicit Tiles(const osg::Node& terrain) : _options(TileGuard::readingOptions(terrain)) {}
+
     osg::ref_ptr<osg::Node> readNodeFile(const std::string& file) override
     {
         const auto found = _tiles.find(file);
@@ -33,7 +36,7 @@ public:
             _order.splice(_order.begin(), _order, found->second.second);
             return found->second.first;
         }
-        const osg::ref_ptr<osg::Node> tile = osgDB::readRefNodeFile(file);
+        const osg::ref_ptr<osg::Node> tile = osgDB::readRefNodeFile(file, _options.get());
         _order.push_front(file);
         _tiles[file] = {tile, _order.begin()};
         if (_order.size() > most)
@@ -46,6 +49,7 @@ public:
 
 private:
     static constexpr std::size_t most = 64;
+    const osg::ref_ptr<osgDB::Options> _options;
     std::list<std::string> _order;
     std::map<std::string, std::pair<osg::ref_ptr<osg::Node>, std::list<std::string>::iterator>> _tiles;
 };
@@ -70,7 +74,7 @@ public:
 FinestGround::FinestGround(const osg::Node& terrain, const osg::EllipsoidModel* ellipsoid,
                            const TerrainRelief& relief)
     : _terrain(const_cast<osg::Node&>(terrain)), _ellipsoid(ellipsoid), _relief(relief), _low(HUGE_VAL),
-      _high(-HUGE_VAL), _tiles(new Tiles)
+      _high(-HUGE_VAL), _tiles(new Tiles(terrain))
 {
     for (const float height : relief.heights)
     {

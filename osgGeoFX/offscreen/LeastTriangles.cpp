@@ -3,6 +3,7 @@
 #include <osgGeoFX/offscreen/LeastTriangles.h>
 
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/paging/TileGuard.h>
 #include <osgGeoFX/paging/TilePosts.h>
 
 #include <osg/NodeVisitor>
@@ -87,6 +88,7 @@ std::unique_ptr<LeastTriangles> LeastTriangles::read(const osg::Node& root, std:
     result->_geocentric = terrain->geocentric;
     TileCollector collector;
     const_cast<osg::Node&>(root).accept(collector);
+    const osg::ref_ptr<osgDB::Options> reading = TileGuard::readingOptions(root);
     int cells = 0, level = 0;
     const float nowhere = std::numeric_limits<float>::quiet_NaN();
     for (;;)
@@ -125,7 +127,7 @@ std::unique_ptr<LeastTriangles> LeastTriangles::read(const osg::Node& root, std:
         const std::string file = collector.files.back();
         collector.files.pop_back();
         collector.tiles.clear();
-        const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file);
+        const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file, reading.get());
         if (!node)
         {
             error = file +

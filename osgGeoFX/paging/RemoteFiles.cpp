@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/paging/RemoteFiles.h>
 
+#include <osgGeoFX/paging/FilesByOthers.h>
 #include <osgGeoFX/paging/detail/BinaryHeader.h>
 #include <osgGeoFX/paging/detail/FileStore.h>
 #include <osgGeoFX/paging/detail/ServerRests.h>
@@ -147,9 +148,18 @@ RemoteFiles::Node parse(const std::string& url, const std::string& bytes, const 
     result.bytes = bytes.size();
     const std::string path = pathOf(url), extension = osgDB::getLowerCaseFileExtension(path);
     result.reason = faultOfBytes(bytes, extension);
+    FilesByOthers* const others = FilesByOthers::of(options);
+    if (others && result.reason.empty())
+    {
+        ReadResult read = others->readBytes(bytes, path, options);
+        result.node = read.getNode();
+        if (!result.node) result.reason = read.message();
+    }
     osgDB::ReaderWriter* const reader =
-        result.reason.empty() ? osgDB::Registry::instance()->getReaderWriterForExtension(extension) : nullptr;
-    if (!reader && result.reason.empty()) result.reason = "OSG has no plugin for \"" + extension + "\"";
+        result.reason.empty() && !others ? osgDB::Registry::instance()->getReaderWriterForExtension(extension)
+                                         : nullptr;
+    if (!reader && !others && result.reason.empty())
+        result.reason = "OSG has no plugin for \"" + extension + "\"";
     if (reader)
     {
         const osg::ref_ptr<osgDB::Options> here = options ? options->cloneOptions() : new osgDB::Options;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/paging/TileGuard.h>
 
+#include <osgGeoFX/paging/FilesByOthers.h>
 #include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/paging/detail/BinaryHeader.h>
 #include <osgGeoFX/paging/detail/FileStamp.h>
@@ -159,14 +160,22 @@ TileGuard::TileGuard() : osg::Referenced(true) {}
 
 TileGuard::~TileGuard() = default;
 
-osg::ref_ptr<TileGuard> TileGuard::install(osg::Node* node)
+osg::ref_ptr<TileGuard> TileGuard::install(osg::Node* node, FilesByOthers* files)
 {
     Installer search(nullptr);
     node->accept(search);
     osg::ref_ptr<TileGuard> guard = search.found ? search.found : new TileGuard;
+    if (!search.found) guard->_files = files;
     Installer installer(guard.get());
     node->accept(installer);
     return guard;
+}
+
+osg::ref_ptr<osgDB::Options> TileGuard::readingOptions(const osg::Node& node)
+{
+    Installer search(nullptr);
+    const_cast<osg::Node&>(node).accept(search);
+    return search.found && search.found->_files ? search.found->_files->addTo(nullptr) : nullptr;
 }
 
 std::string TileGuard::faultOf(const std::string& path)
@@ -299,7 +308,8 @@ ReadResult TileGuard::read(const std::string& file, const osgDB::Options* option
     }
     const osg::ref_ptr<osgDB::ReadFileCallback> previous =
         callback.previous ? callback.previous.get() : osgDB::Registry::instance()->getReadFileCallback();
-    if (!previous && RemoteFiles::isRemote(file)) return readRemote(file, options, callback);
+    const osg::ref_ptr<osgDB::Options> limited = _files && !previous ? _files->addTo(options) : nullptr;
+    if (!previous && RemoteFiles::isRemote(file)) return readRemote(file, options, limited, callback);
     attempt.path = previous ? std::string() : osgDB::findDataFile(file, options);
     attempt.stamp = FileStamp::of(attempt.path);
     // A name without a file may mean something to the plugin of its extension.
@@ -311,8 +321,12 @@ ReadResult TileGuard::read(const std::string& file, const osgDB::Options* option
     ReadResult result;
     try
     {
-        result = previous ? previous->readNode(file, options)
-                          : osgDB::Registry::instance()->readNodeImplementation(file, options);
+        if (_files)
+            result =
+                previous ? _files->readThrough(*previous, file, options) : _files->readNode(file, limited);
+        else
+            result = previous ? previous->readNode(file, options)
+                              : osgDB::Registry::instance()->readNodeImplementation(file, options);
         if (result.validNode() && !result.loadedFromCache())
         {
             Installer installer(this);
@@ -350,9 +364,13 @@ ReadResult TileGuard::read(const std::string& file, const osgDB::Options* option
     return result;
 }
 
-ReadResult TileGuard::readRemote(const std::string& file, const osgDB::Options* options, Callback& callback)
+ReadResult TileGuard::readRemote(const std::string& file, const osgDB::Options* options,
+                                 const osgDB::Options* limited, Callback& callback)
 {
-    const RemoteFiles::Node read = RemoteFiles::readNode(file, options, RemoteFiles::Order::CacheFirst);
+    const std::string outside = limited ? _files->faultOfPlace(file) : std::string();
+    if (!outside.empty()) return fail(file, outside, options, callback);
+    const RemoteFiles::Node read =
+        RemoteFiles::readNode(file, limited ? limited : options, RemoteFiles::Order::CacheFirst);
     const std::string url = RemoteFiles::normalOf(file), server = osgDB::getServerAddress(file);
     if (!read.node)
     {

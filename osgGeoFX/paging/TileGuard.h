@@ -20,6 +20,8 @@
 namespace osgGeoFX
 {
 
+class FilesByOthers;
+
 /// Is told of the tiles that a pager reads; see TileGuard::addListener().
 /// @ingroup paging
 class OSGGEOFX_EXPORT TileListener : public osg::Referenced
@@ -67,8 +69,13 @@ public:
     };
 
     /// Guards all PagedLODs at and below the node. Call it before the scene is drawn, or in the update phase. Returns
-    /// the guard that is already there, if any (a .geofx scene brings its own).
-    static osg::ref_ptr<TileGuard> install(osg::Node* node);
+    /// the guard that is already there, if any (a .geofx scene brings its own). With `files`, the files of all these
+    /// PagedLODs are read as those of somebody else; if the guard is there already, it keeps the files that it has.
+    static osg::ref_ptr<TileGuard> install(osg::Node* node, FilesByOthers* files = nullptr);
+
+    /// Options to read the files of PagedLODs at and below a node in another way than by a pager: with the limits of
+    /// somebody else's files, if there are any, and without stand-ins and listeners. Null if no limits hold.
+    static osg::ref_ptr<osgDB::Options> readingOptions(const osg::Node& node);
 
     /// The reason why OSG should not read a file: it is missing or, if it is an .osgb, has a bad header. Empty if no
     /// fault is found. `path` is empty for a file that was not found.
@@ -111,7 +118,7 @@ private:
                                          Callback& callback);
 
     osgDB::ReaderWriter::ReadResult readRemote(const std::string& file, const osgDB::Options* options,
-                                               Callback& callback);
+                                               const osgDB::Options* limited, Callback& callback);
     osgDB::ReaderWriter::ReadResult failRemote(const std::string& file, const osgDB::Options* options,
                                                Callback& callback);
 
@@ -119,6 +126,7 @@ private:
     std::set<std::string> _failed, _warned; ///< file names; warned of: servers and folders, too
     double _retryDelay = 10.0;              ///< seconds
     Counts _counts;
+    osg::ref_ptr<FilesByOthers> _files;
     std::vector<osg::observer_ptr<TileListener>> _listeners;
     struct Guarded
     {

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/paging/TileGuard.h>
 #include <osgGeoFX/panorama/detail/CoverSampler.h>
 
 #include <osg/Geometry>
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace osgGeoFX
 {
@@ -47,8 +49,10 @@ struct Patch
 class Gatherer : public osg::NodeVisitor
 {
 public:
-    Gatherer(const osg::EllipsoidModel* ellipsoid, const TerrainInfo* info, int cells)
-        : osg::NodeVisitor(TRAVERSE_ACTIVE_CHILDREN), _ellipsoid(ellipsoid), _info(info), _cells(cells)
+    Gatherer(const osg::EllipsoidModel* ellipsoid, const TerrainInfo* info, int cells,
+             osg::ref_ptr<osgDB::Options> reading)
+        : osg::NodeVisitor(TRAVERSE_ACTIVE_CHILDREN), _ellipsoid(ellipsoid), _info(info), _cells(cells),
+          _reading(std::move(reading))
     {
         setNodeMaskOverride(~0u);
         if (info && info->geocentric) _middle = 0.5 * (info->west + info->east);
@@ -76,7 +80,8 @@ public:
         {
             const std::string& file = paged->getFileName(1);
             const osg::ref_ptr<osg::Node> finer = osgDB::readRefNodeFile(
-                paged->getDatabasePath().empty() ? file : osgDB::concatPaths(paged->getDatabasePath(), file));
+                paged->getDatabasePath().empty() ? file : osgDB::concatPaths(paged->getDatabasePath(), file),
+                _reading.get());
             if (finer)
             {
                 finer->accept(*this);
@@ -153,6 +158,7 @@ private:
     osg::ref_ptr<const osg::EllipsoidModel> _ellipsoid;
     const TerrainInfo* _info;
     int _cells;
+    osg::ref_ptr<osgDB::Options> _reading; ///< of tiles
     std::optional<double> _middle;
     osg::ref_ptr<osg::Geometry> _ground;
 };
@@ -224,7 +230,7 @@ std::optional<TerrainRelief> TerrainRelief::read(const osg::Node& terrain,
     if (info) ellipsoid = info->geocentric ? ours.get() : nullptr;
     cells = std::clamp(cells, 16, 4096);
 
-    Gatherer gatherer(ellipsoid, info ? &*info : nullptr, cells);
+    Gatherer gatherer(ellipsoid, info ? &*info : nullptr, cells, TileGuard::readingOptions(terrain));
     const_cast<osg::Node&>(info ? *info->root : terrain).accept(gatherer);
     TerrainRelief relief;
     relief.geocentric = ellipsoid != nullptr;

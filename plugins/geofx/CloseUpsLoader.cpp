@@ -102,7 +102,7 @@ private:
     void place(const SceneCloseUp& closeUp)
     {
         RegionOfInterest& region = *closeUp.closeUp->getRegion();
-        if (closeUp.image && !region.setImage(pictureOf(*closeUp.image)))
+        if (closeUp.image && !region.setImage(_terrain.pictureOf(*closeUp.image)))
             fail(closeUp.place, "the picture \"" + closeUp.image->path +
                                     "\" cannot be a mask; expected: a plain picture, such as a grey PNG.");
         if (_terrain.ellipsoid())

@@ -52,7 +52,7 @@ public:
     {
         for (const SceneMappings::Layer& layer : _mappings.layers)
             layer.layer->setImage(
-                pictureOf(layer.file, layer.layer->getKind(), _mappings.effect->getPageSide()));
+                _terrain.pictureOf(layer.file, layer.layer->getKind(), _mappings.effect->getPageSide()));
         for (const SceneTable& table : _mappings.tables)
             readTable(table);
         for (const SceneMapping& mapping : _mappings.mappings)

@@ -13,9 +13,9 @@ namespace osgGeoFX
 namespace
 {
 
-osg::ref_ptr<osg::Image> paletteOf(const ScenePath& file)
+osg::ref_ptr<osg::Image> paletteOf(const ScenePath& file, SceneTerrain& terrain)
 {
-    const osg::ref_ptr<osg::Image> picture = pictureOf(file);
+    const osg::ref_ptr<osg::Image> picture = terrain.pictureOf(file);
     std::string reason;
     osg::ref_ptr<osg::Image> palette = paletteFromImage(*picture, reason);
     if (!palette) fail(file.place, "the palette \"" + file.path + "\" cannot be used: " + reason);
@@ -45,12 +45,12 @@ osg::ref_ptr<StrokeLines> linesOf(const std::vector<ScenePanorama::Lines>& files
 
 } // namespace
 
-void loadPanoramas(const SceneFile& scene, const SceneTerrain& terrain)
+void loadPanoramas(const SceneFile& scene, SceneTerrain& terrain)
 {
     for (const ScenePanorama& panorama : scene.panoramas)
     {
-        if (panorama.palette) panorama.effect->setPalette(paletteOf(*panorama.palette));
-        if (panorama.skyImage) panorama.effect->setSkyImage(pictureOf(*panorama.skyImage));
+        if (panorama.palette) panorama.effect->setPalette(paletteOf(*panorama.palette, terrain));
+        if (panorama.skyImage) panorama.effect->setSkyImage(terrain.pictureOf(*panorama.skyImage));
         if (!panorama.lines.empty()) panorama.effect->setLines(linesOf(panorama.lines, terrain));
     }
 }

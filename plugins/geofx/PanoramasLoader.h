@@ -18,6 +18,6 @@ struct StrokeVectorsRequest
 };
 
 /// Gives the panorama maps of a scene the pictures and vector data that it names. Throws SceneFailure.
-void loadPanoramas(const SceneFile& scene, const SceneTerrain& terrain);
+void loadPanoramas(const SceneFile& scene, SceneTerrain& terrain);
 
 } // namespace osgGeoFX

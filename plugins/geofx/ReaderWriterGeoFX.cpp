@@ -7,6 +7,7 @@
 #include "SceneNode.h"
 #include "SceneReach.h"
 
+#include <osgGeoFX/paging/FilesByOthers.h>
 #include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/paging/TileGuard.h>
 
@@ -87,15 +88,22 @@ private:
             return failure({result.scene->map->place.message(
                 "this scene is the terrain of another one, and names stand over the whole picture; move the "
                 "<map> into the outer scene.")});
+        const bool anywhere = isAllowedOutside(options);
+        result.scene->anywhere = anywhere;
         ScenePath database;
         if (result.scene->database)
             database = *result.scene->database;
         else
             database = builtDatabase(*result.scene->rasters, error);
+        if (!error.empty()) return failure({error});
+        // A database that was built here lies in the person's cache folder.
+        const osg::ref_ptr<FilesByOthers> files =
+            anywhere ? nullptr
+                     : new FilesByOthers(result.scene->database ? folder : osgDB::getFilePath(database.path));
         const osg::ref_ptr<osg::Node> terrain =
-            error.empty() ? readTerrain(database, options, error) : nullptr;
+            readTerrain(database, files ? files->addTo(options).get() : options, error);
         if (!terrain) return failure({error});
-        TileGuard::install(terrain);
+        TileGuard::install(terrain, files);
         const osg::ref_ptr<osg::Group> node = createSceneNode(*result.scene, terrain, error);
         if (!node) return failure({error});
         return node.get();
@@ -190,6 +198,13 @@ private:
 };
 
 } // namespace osgGeoFX
+
+namespace
+{
+
+const osgGeoFX::FilesByOthers::Gate gate;
+
+} // namespace
 
 using osgGeoFX::ReaderWriterGeoFX;
 REGISTER_OSGPLUGIN(geofx, ReaderWriterGeoFX)

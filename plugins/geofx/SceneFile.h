@@ -282,7 +282,8 @@ struct SceneEngine
     All functions may be called from any thread. The effects belong to whoever has the value. */
 struct SceneFile
 {
-    ScenePlace place; ///< of <terrain>
+    ScenePlace place;      ///< of <terrain>
+    bool anywhere = false; ///< the program trusts the scene; no file says so
     // One of these three.
     std::optional<ScenePath> database;
     std::optional<SceneRasters> rasters;

@@ -4,6 +4,7 @@
 
 #include "MappingsLoader.h"
 
+#include <osgGeoFX/paging/FilesByOthers.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/raster/ColorRampFile.h>
 
@@ -12,6 +13,7 @@
 #include <osg/Math>
 #include <osg/NodeVisitor>
 #include <osgDB/FileNameUtils>
+#include <osgDB/FileUtils>
 #include <osgDB/Registry>
 
 #include <algorithm>
@@ -40,7 +42,8 @@ std::string wktOf(const osg::Node& terrain)
     return finder.wkt;
 }
 
-osg::ref_ptr<osg::Image> readByOsg(const std::string& file, std::string& reason)
+/// By the file's name, as OSG does.
+osg::ref_ptr<osg::Image> readByName(const std::string& file, std::string& reason)
 {
     try
     {
@@ -86,30 +89,60 @@ void warn(const ScenePlace& place, const std::string& text)
     OSG_WARN << "osgGeoFX: " << place.message(text) << std::endl;
 }
 
-osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file, DataLayer::Kind kind, int maxSide)
+osg::ref_ptr<osg::Image> SceneTerrain::pictureOf(const ScenePath& file, DataLayer::Kind kind, int maxSide)
 {
+    const auto [known, isNew] =
+        _pictures.emplace(std::make_tuple(osgDB::getRealPath(file.path), kind, maxSide), nullptr);
+    if (isNew) known->second = readPicture(file, kind, maxSide);
+    return known->second;
+}
+
+osg::ref_ptr<osg::Image> SceneTerrain::readPicture(const ScenePath& file, DataLayer::Kind kind, int maxSide)
+{
+    // All that a scene by others unpacks, bytes.
+    constexpr double mostBytes = 512.0 * 1024.0 * 1024.0;
     PictureRequest look;
     look.file = file.path;
     look.look = true;
-    SceneTerrain::askIfAny("picture", &look);
+    askIfAny("picture", &look);
     // OSG's readers take all of it, and are not asked for more than 256 MiB.
     constexpr double mostPixels = 8192.0 * 8192.0;
-    const bool isHuge = static_cast<double>(look.width) * static_cast<double>(look.height) > mostPixels;
+    const double pixels = static_cast<double>(look.width) * static_cast<double>(look.height);
+    const bool isHuge = pixels > mostPixels;
+    if (!_anywhere && pixels > 0.0)
+    {
+        const double shrink = std::sqrt(std::max(0.0, mostBytes - _pictureBytes) / (4.0 * pixels));
+        maxSide = std::min(maxSide, static_cast<int>(shrink * std::max(look.width, look.height)));
+    }
+    const std::string tooMany =
+        "the scene's pictures take more than 512 MiB together when they are unpacked; "
+        "name fewer or smaller ones; or, if you trust the scene, start the program with "
+        "--allow-outside, or give OSG the option string \"allowOutside\".";
+    if (maxSide < 1) fail(file.place, tooMany);
     std::string reason;
     std::string rasterReason;
     osg::ref_ptr<osg::Image> image;
     // OSG's reader of TIFF knows no tiles, and says so at length.
     const std::string extension = osgDB::getLowerCaseFileExtension(file.path);
     const bool isTiff = extension == "tif" || extension == "tiff";
-    if (kind != DataLayer::COLOR || isHuge || isTiff) image = rasterOf(file, kind, maxSide, rasterReason);
-    if (!image && !isHuge) image = readByOsg(file.path, reason);
+    const bool isReduced = std::max(look.width, look.height) > maxSide;
+    if (kind != DataLayer::COLOR || isHuge || isTiff || isReduced)
+        image = rasterOf(file, kind, maxSide, rasterReason);
+    if (!image && !isHuge)
+        image = _anywhere ? readByName(file.path, reason) : FilesByOthers::readPicture(file.path, reason);
     if (!image && rasterReason.empty()) image = rasterOf(file, kind, maxSide, rasterReason);
-    if (image) return image;
+    if (image)
+    {
+        _pictureBytes += image->getTotalSizeInBytes();
+        if (!_anywhere && _pictureBytes > mostBytes) fail(file.place, tooMany);
+        return image;
+    }
     if (!rasterReason.empty()) reason += (reason.empty() ? "" : "; ") + rasterReason;
     fail(file.place,
          "the picture \"" + file.path + "\" cannot be read (" + reason +
-             "); convert it to PNG, or to GeoTIFF with gdal_translate, or put the folder of OSG's "
-             "plugin for it on OSG_LIBRARY_PATH.");
+             "); convert it to PNG, or to GeoTIFF with gdal_translate" +
+             (_anywhere ? ", or put the folder of OSG's plugin for it on OSG_LIBRARY_PATH."
+                        : "; or, if you trust the scene, start the program with --allow-outside."));
 }
 
 void readTable(const SceneTable& table)

@@ -10,6 +10,9 @@
 
 #include <osg/Image>
 
+#include <map>
+#include <tuple>
+
 namespace osgGeoFX
 {
 
@@ -34,11 +37,6 @@ struct PictureRequest
     bool done = false;
 };
 
-/** The picture of a file, or a film. Colors are read by OSG, and by GDAL where OSG does not know the file, where it is a TIFF, or
-    where it is so large that it must be reduced while it is read; values and classes by GDAL, and by OSG where GDAL does not know it or is
-    not there. What GDAL reads has no more than `maxSide` texels on a side; a warning says where it had more. */
-osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file, DataLayer::Kind kind = DataLayer::COLOR,
-                                   int maxSide = 16384);
 /// A warning about a place of the scene file.
 void warn(const ScenePlace& place, const std::string& text);
 /// The colors of a file.
@@ -48,11 +46,19 @@ void readTable(const SceneTable& table);
 class SceneTerrain
 {
 public:
-    /// The terrain is a child of the scene's node already. Both must outlive this.
-    SceneTerrain(const EffectScene& node, const osg::Node& terrain)
-        : _terrain(terrain), _ellipsoid(node.ground().ellipsoid)
+    /// The terrain is a child of the scene's node already. Both must outlive this. `anywhere`: the program trusts the scene.
+    SceneTerrain(const EffectScene& node, const osg::Node& terrain, bool anywhere)
+        : _terrain(terrain), _ellipsoid(node.ground().ellipsoid), _anywhere(anywhere)
     {
     }
+
+    /** The picture of a file, or a film; several requests for the same give the same image. Colors are read by OSG, and by GDAL
+        where OSG does not know the file, where it is a TIFF, or where it is so large that it must be reduced while it is read; values
+        and classes by GDAL, and by OSG where GDAL does not know it or is not there. What GDAL reads has no more than `maxSide` texels
+        on a side; a warning says where it had more. Without the program's trust OSG reads only what FilesByOthers reads, and all
+        pictures of a scene take up to 512 MiB. */
+    osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file, DataLayer::Kind kind = DataLayer::COLOR,
+                                       int maxSide = 16384);
 
     const osg::Node& node() const { return _terrain; }
     /// Null on a projected terrain.
@@ -80,9 +86,14 @@ public:
                                                const std::string& plugin = "geofxdata");
 
 private:
+    osg::ref_ptr<osg::Image> readPicture(const ScenePath& file, DataLayer::Kind kind, int maxSide);
+
     const osg::Node& _terrain;
     osg::ref_ptr<const osg::EllipsoidModel> _ellipsoid;
+    const bool _anywhere;
     osg::ref_ptr<Georeference> _reference;
+    std::map<std::tuple<std::string, DataLayer::Kind, int>, osg::ref_ptr<osg::Image>> _pictures;
+    double _pictureBytes = 0.0;
 };
 
 } // namespace osgGeoFX

@@ -176,7 +176,7 @@ bool addEffects(const SceneFile& scene, EffectScene& node, const osg::Node& terr
     if (!scene.presets.empty()) EffectPreset::write(node, scene.presets);
     try
     {
-        SceneTerrain ground(node, terrain);
+        SceneTerrain ground(node, terrain, scene.anywhere);
         loadMappings(scene, ground, node);
         loadCloseUps(scene, ground);
         loadPanoramas(scene, ground);

@@ -2,33 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "SceneReach.h"
 
-#include <algorithm>
-#include <filesystem>
+#include <osgGeoFX/paging/FilesByOthers.h>
+
+#include <sstream>
 
 namespace osgGeoFX
 {
 
 namespace
 {
-
-namespace fs = std::filesystem;
-
-bool isAddress(const std::string& path)
-{
-    return path.find("://") != std::string::npos;
-}
-
-/// Whether an address lies below another one, after ".." in it.
-bool isBelow(const std::string& address, const std::string& folder)
-{
-    const std::size_t start = address.find('/', address.find("://") + 3);
-    const std::string root = folder + (folder.back() == '/' ? "" : "/");
-    // A server decides what escaped characters mean; ".." may be among them.
-    if (start == std::string::npos || address.find('%') != std::string::npos) return false;
-    const std::string normal =
-        address.substr(0, start) + fs::path(address.substr(start)).lexically_normal().string();
-    return normal.compare(0, root.size(), root) == 0;
-}
 
 const char* const remedy =
     "put it beside the scene file or below; or, if you trust the scene, start the program with "
@@ -38,16 +20,17 @@ const char* const remedy =
 
 const char* const allowOutside = "allowOutside";
 
+bool isAllowedOutside(const osgDB::Options* options)
+{
+    std::istringstream words(options ? options->getOptionString() : std::string());
+    for (std::string word; words >> word;)
+        if (word == allowOutside) return true;
+    return false;
+}
+
 bool isWithin(const std::string& path, const std::string& folder)
 {
-    if (isAddress(folder)) return isAddress(path) && isBelow(path, folder);
-    if (path.rfind("/vsi", 0) == 0 || isAddress(path)) return false;
-    std::error_code code;
-    const fs::path root = fs::weakly_canonical(folder.empty() ? "." : folder, code);
-    if (code) return false;
-    const fs::path real = fs::weakly_canonical(path, code);
-    if (code) return false;
-    return std::mismatch(root.begin(), root.end(), real.begin(), real.end()).first == root.end();
+    return FilesByOthers::isWithin(path, folder);
 }
 
 std::vector<std::string> unfetchedPaths(const SceneFile& scene)

@@ -11,14 +11,16 @@ namespace osgGeoFX
 
 /* A scene is often somebody else's, so it may name files beside itself and below, and nothing else: no other folder, no link that
    leads to one, no address, none of GDAL's file systems and services. A program consents to more with the option string
-   "allowOutside". What files hold in their turn is followed as far as GDAL tells (sourcesOf()); what a database's tiles
-   name is theirs. */
+   "allowOutside". What files hold in their turn is followed as far as GDAL tells (sourcesOf()). The database, its tiles and the scene's
+   pictures are read through FilesByOthers. */
 
 /// The option string by which a program consents.
 extern const char* const allowOutside;
 
-/// Whether a path lies in a folder or below it, links followed. An address does not, nor does what GDAL reads without a file.
-/// If the folder is an address, addresses below it do, and nothing else.
+/// Whether the options hold the program's consent.
+bool isAllowedOutside(const osgDB::Options* options);
+
+/// FilesByOthers::isWithin().
 bool isWithin(const std::string& path, const std::string& folder);
 
 /// One sentence for each path that leads out of the scene's folder, the cache among them.

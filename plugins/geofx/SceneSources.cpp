@@ -9,8 +9,8 @@
 #include <osgDB/FileUtils>
 #include <osgDB/fstream>
 
+#include <map>
 #include <set>
-#include <sstream>
 
 namespace osgGeoFX
 {
@@ -67,11 +67,14 @@ std::string faultOf(const std::string& file, const std::string& folder)
 std::vector<std::string> outsideSources(const SceneFile& scene, const std::string& folder)
 {
     std::vector<std::string> errors;
+    std::map<std::string, std::string> faults; // of each file once
     for (const ScenePath& path : filesOf(scene))
     {
         // GDAL does not read databases.
         if (scene.database && path.path == scene.database->path) continue;
-        const std::string fault = faultOf(path.path, folder);
+        const auto [known, isNew] = faults.emplace(osgDB::getRealPath(path.path), std::string());
+        if (isNew) known->second = faultOf(path.path, folder);
+        const std::string& fault = known->second;
         if (fault.empty()) continue;
         errors.push_back(path.place.message("the file \"" + path.path + "\" " + fault +
                                             ", which lies outside the scene's folder; convert it to GeoTIFF "
@@ -112,10 +115,7 @@ std::string readSceneText(const std::string& path)
 std::vector<std::string> faultsOfFiles(const SceneFile& scene, const std::string& folder,
                                        const osgDB::Options* options)
 {
-    bool anywhere = false;
-    std::istringstream words(options ? options->getOptionString() : std::string());
-    for (std::string word; words >> word;)
-        anywhere = anywhere || word == allowOutside;
+    const bool anywhere = isAllowedOutside(options);
     std::vector<std::string> errors;
     if (!anywhere) errors = outsidePaths(scene, folder);
     if (errors.empty() && !anywhere) errors = programsOf(scene);

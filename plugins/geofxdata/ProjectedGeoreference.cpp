@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "ProjectedGeoreference.h"
 
+#include <osgGeoFX/geodata/CoordinateText.h>
+
 #include <cpl_error.h>
 
 #include <osg/Math>
@@ -15,9 +17,11 @@ osg::ref_ptr<ProjectedGeoreference> ProjectedGeoreference::create(const std::str
 {
     const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
     OGRSpatialReference grid;
-    if (wkt.empty() || grid.SetFromUserInput(wkt.c_str()) != OGRERR_NONE)
+    if (!setCoordinateSystem(grid, wkt))
     {
-        error = "The coordinate system of the database is not understood; build it again with --srs EPSG:N.";
+        error = "The coordinate system of the database is not understood (expected: WKT, a PROJ string, or a "
+                "code "
+                "such as EPSG:32604); build it again with --srs EPSG:N.";
         return nullptr;
     }
     grid.StripVertical();

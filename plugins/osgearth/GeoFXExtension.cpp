@@ -102,6 +102,7 @@ private:
         result = parseEngineScene(readSceneText(path), path, folder);
         if (!result.scene) return result;
         result.errors = faultsOfFiles(*result.scene, folder, _options.get());
+        result.scene->anywhere = isAllowedOutside(_options.get());
         if (!result.errors.empty()) result.scene.reset();
         return result;
     }

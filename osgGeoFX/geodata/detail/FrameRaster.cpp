@@ -3,6 +3,7 @@
 #include <osgGeoFX/geodata/detail/FrameRaster.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/CoordinateText.h>
 #include <osgGeoFX/mapping/LayerWords.h>
 
 #include <cpl_conv.h>
@@ -100,7 +101,7 @@ FrameCrs crsOf(const MappingFrame& frame, const std::string& file)
     }
     OGRSpatialReference srs;
     GdalErrorScope errors;
-    if (srs.SetFromUserInput(frame.wkt.c_str()) != OGRERR_NONE || !srs.IsProjected())
+    if (!setCoordinateSystem(srs, frame.wkt) || !srs.IsProjected())
         throw BuildError(file +
                          ": the terrain has no coordinate system into which it could be brought; build "
                          "the terrain with osggeofx_build.");

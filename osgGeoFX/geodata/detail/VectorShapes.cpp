@@ -3,6 +3,7 @@
 #include <osgGeoFX/geodata/detail/VectorShapes.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/CoordinateText.h>
 #include <osgGeoFX/geodata/detail/FrameRaster.h>
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
 #include <osgGeoFX/geodata/detail/OgrStyle.h>
@@ -481,7 +482,7 @@ std::optional<DegreeBox> VectorShapes::reachOf(const MappingFrame& frame)
 {
     const GdalErrorScope quiet;
     OGRSpatialReference srs;
-    if (srs.SetFromUserInput(frame.wkt.c_str()) != OGRERR_NONE) return std::nullopt;
+    if (!setCoordinateSystem(srs, frame.wkt)) return std::nullopt;
     // The text of a coordinate system does not tell its area, but its number does.
     OGRSpatialReference known;
     const char* const code = srs.GetAuthorityCode(nullptr);

@@ -3,6 +3,7 @@
 #include <osgGeoFX/town/detail/BuildingReader.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/CoordinateText.h>
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
 
 #include <algorithm>
@@ -399,7 +400,7 @@ void readBuildings(const TownOptions& options, const TownGrid& grid, const std::
 {
     initialiseGdal();
     OGRSpatialReference target;
-    if (target.SetFromUserInput(wkt.c_str()) != OGRERR_NONE)
+    if (!setCoordinateSystem(target, wkt))
         throw BuildError(options.database +
                          "/terrain.osgb: its coordinate system cannot be read; build the database again.");
     target.StripVertical();
