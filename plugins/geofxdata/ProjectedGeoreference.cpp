@@ -19,9 +19,9 @@ osg::ref_ptr<ProjectedGeoreference> ProjectedGeoreference::create(const std::str
     OGRSpatialReference grid;
     if (!setCoordinateSystem(grid, wkt))
     {
-        error = "The coordinate system of the database is not understood (expected: WKT, a PROJ string, or a "
-                "code "
-                "such as EPSG:32604); build it again with --srs EPSG:N.";
+        error =
+            "The coordinate system of the database is not understood; build it again with --srs EPSG:N (a "
+            "coordinate system is WKT, a PROJ string, or a code such as EPSG:32604).";
         return nullptr;
     }
     grid.StripVertical();

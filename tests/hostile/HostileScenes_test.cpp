@@ -6,6 +6,7 @@
 #include <tools/GeofxPlugins.h>
 #include <tools/NotifyWatch.h>
 #include <tools/PagedScene.h>
+#include <tools/TestRasters.h>
 #include <tools/TestServer.h>
 #include <tools/WatchedProgram.h>
 
@@ -21,8 +22,13 @@
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
 #include <osgDB/WriteFile>
+#include <osgGeoFX/geodata/MappingRaster.h>
+#include <osgGeoFX/geodata/TiledRaster.h>
+#include <osgGeoFX/mapping/PagedRaster.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/paging/TileGuard.h>
+#include <osgGeoFX/scene/EffectScene.h>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -395,8 +401,11 @@ TEST_F(HostileScenes, PackedDatabasesThatBecomeGigabytesAreRefused)
     ASSERT_EQ(status, 0);
     EXPECT_LT(fs::file_size(in("t.osgb")), 2u << 20);
     writeScene("", "<database file='t.osgb'/>");
-    const WatchedProgram watched = expectRefused("256 MiB");
-    EXPECT_LT(watched.result.peakMiB, 500.0);
+    EXPECT_LT(expectRefused("256 MiB").result.peakMiB, 200.0);
+    // Its end tells a lie about its size.
+    fs::resize_file(in("t.osgb"), fs::file_size(in("t.osgb")) - 4);
+    std::ofstream(in("t.osgb"), std::ios::binary | std::ios::app).write("\1\0\0\0", 4);
+    expectRefused("256 MiB");
 }
 
 TEST_F(HostileScenes, APictureThatManyNameIsReadOnce)
@@ -417,6 +426,30 @@ TEST_F(HostileScenes, APictureThatManyNameIsReadOnce)
         ++opened;
     // GDAL looks at it before OSG reads it.
     EXPECT_LE(opened, 8u) << watched.log;
+}
+
+TEST_F(HostileScenes, RastersThatADatabaseNamesByItselfAreNotOpened)
+{
+    const std::string file = writeRelief(_place / "outside.tif", 8, 8, 0.0, 0.01, 0.001);
+    osgGeoFX::MappingFrame frame;
+    std::string error;
+    ASSERT_TRUE(osgGeoFX::MappingRaster::moveToMiddle(file, frame, error)) << error;
+    const osg::ref_ptr<osgGeoFX::PagedRaster> raster = osgGeoFX::PagedRaster::create(
+        osgGeoFX::TiledRaster::open(file, frame, osgGeoFX::DataLayer::VALUE, error), {}, error);
+    ASSERT_TRUE(raster) << error;
+    const osg::ref_ptr<osgGeoFX::ProjectiveMappings> effect = new osgGeoFX::ProjectiveMappings;
+    ASSERT_TRUE(effect->addRaster(raster));
+    const osg::ref_ptr<osgGeoFX::EffectScene> scene = new osgGeoFX::EffectScene;
+    scene->addEffect(effect);
+    scene->addChild(ground());
+    save(*scene, "e.osgb");
+    writeScene("", "<database file='e.osgb'/>");
+    const WatchedProgram watched = read();
+    expectHarmless(watched, {});
+    EXPECT_EQ(watched.log.find("outside.tif"), std::string::npos) << watched.log;
+    EXPECT_NE(watched.result.standardError.find("names a raster by itself"), std::string::npos)
+        << watched.result.standardError;
+    EXPECT_NE(read("x.geofx", "allowOutside").log.find("outside.tif"), std::string::npos);
 }
 
 TEST_F(HostileScenes, ConsentReadsAllThatOsgReads)

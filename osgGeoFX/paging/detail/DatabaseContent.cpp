@@ -83,16 +83,17 @@ std::string unpack(std::string& content, std::size_t most)
     osgDB::BaseCompressor* const method =
         osgDB::Registry::instance()->getObjectWrapperManager()->findCompressor("zlib");
     if (!method) return "OSG has no zlib to unpack it";
+    // The last bytes tell how many there are. Where they lie, unpacking ends by itself.
+    const std::string tooLarge = "it is larger than 256 MiB when it is unpacked";
+    if (numberAt(content, content.size() - 4) > most) return tooLarge;
     std::string unpacked = content.substr(0, zlib);
-    // The last bytes tell how many there are; where they lie, room is made step by step.
-    unpacked.reserve(std::min<std::size_t>(most, numberAt(content, content.size() - 4)) + end);
     const std::uint32_t one = 1;
     unpacked.append(reinterpret_cast<const char*>(&one), sizeof one);
     unpacked += '0';
     Source source(content, end, unpacked, most);
     std::istream bytes(&source);
     const bool done = method->decompress(bytes, unpacked);
-    if (unpacked.size() > most) return "it is larger than 256 MiB when it is unpacked";
+    if (unpacked.size() > most) return tooLarge;
     if (!done) return "it is damaged or cut off";
     content.swap(unpacked);
     return {};
