@@ -5,6 +5,7 @@
 // databases.
 #pragma once
 
+#include <osgGeoFX/paging/FilesByOthers.h>
 #include <osgGeoFX/paging/FreedMemory.h>
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/paging/MemoryBudget.h>

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/CoordinateText.h>
 #include <osgGeoFX/geodata/FileSources.h>
 #include <osgGeoFX/geodata/KmlOverlays.h>
 #include <osgGeoFX/geodata/LandCoverTable.h>

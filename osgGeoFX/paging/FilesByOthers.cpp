@@ -106,8 +106,8 @@ osg::ref_ptr<osg::Image> pictureOf(const std::string& content, std::string& reas
         return nullptr;
     }
     std::istringstream stream(content);
-    const ReadResult result = attempt([&] { return reader->readImage(stream); });
-    osg::ref_ptr<osg::Image> image = const_cast<ReadResult&>(result).getImage();
+    ReadResult result = attempt([&] { return reader->readImage(stream); });
+    osg::ref_ptr<osg::Image> image = result.getImage();
     // A film has no pixels before it plays.
     if (image && (image->valid() || dynamic_cast<osg::ImageStream*>(image.get()))) return image;
     reason = result.message().empty() ? "it is damaged or cut off" : result.message();
@@ -117,6 +117,23 @@ osg::ref_ptr<osg::Image> pictureOf(const std::string& content, std::string& reas
 ReadResult refusal(const std::string& reason)
 {
     return ReadResult(reason + consent);
+}
+
+bool isAddress(const std::string& path)
+{
+    return path.find("://") != std::string::npos;
+}
+
+/// Whether an address lies below another one, after ".." in it.
+bool isBelow(const std::string& address, const std::string& folder)
+{
+    const std::size_t start = address.find('/', address.find("://") + 3);
+    const std::string root = folder + (folder.back() == '/' ? "" : "/");
+    // A server decides what escaped characters mean; ".." may be among them.
+    if (start == std::string::npos || address.find('%') != std::string::npos) return false;
+    const std::string normal =
+        address.substr(0, start) + fs::path(address.substr(start)).lexically_normal().string();
+    return normal.compare(0, root.size(), root) == 0;
 }
 
 bool isScene(const std::string& content, const std::string& name)
@@ -178,20 +195,7 @@ osg::ref_ptr<osgDB::Options> FilesByOthers::addTo(const osgDB::Options* options)
 
 bool FilesByOthers::isWithin(const std::string& path, const std::string& folder)
 {
-    const auto isAddress = [](const std::string& name)
-    {
-        return name.find("://") != std::string::npos;
-    };
-    if (isAddress(folder))
-    {
-        const std::size_t start = isAddress(path) ? path.find('/', path.find("://") + 3) : std::string::npos;
-        const std::string root = folder + (folder.back() == '/' ? "" : "/");
-        // A server decides what escaped characters mean; ".." may be among them.
-        if (start == std::string::npos || path.find('%') != std::string::npos) return false;
-        const std::string normal =
-            path.substr(0, start) + fs::path(path.substr(start)).lexically_normal().string();
-        return normal.compare(0, root.size(), root) == 0;
-    }
+    if (isAddress(folder)) return isAddress(path) && isBelow(path, folder);
     if (path.rfind("/vsi", 0) == 0 || isAddress(path)) return false;
     std::error_code code;
     const fs::path root = fs::weakly_canonical(folder.empty() ? "." : folder, code);
