@@ -368,7 +368,7 @@ ReadResult TileGuard::readRemote(const std::string& file, const osgDB::Options* 
                                  const osgDB::Options* limited, Callback& callback)
 {
     const std::string outside = limited ? _files->faultOfPlace(file) : std::string();
-    if (!outside.empty()) return fail(file, outside, options, callback);
+    if (!outside.empty()) return fail(file, outside, Attempt(), options, callback);
     const RemoteFiles::Node read =
         RemoteFiles::readNode(file, limited ? limited : options, RemoteFiles::Order::CacheFirst);
     const std::string url = RemoteFiles::normalOf(file), server = osgDB::getServerAddress(file);
@@ -405,7 +405,8 @@ ReadResult TileGuard::fail(const std::string& file, const std::string& reason, c
     // A file that could not be read may be there the next time: a disk, or a folder, may be away for a moment.
     const bool broken =
         !attempt.path.empty() && canBeRead(attempt.path) && FileStamp::of(attempt.path) == attempt.stamp;
-    const std::string folder = attempt.path.empty() ? missingFolderOf(file, options) : std::string();
+    const bool local = attempt.path.empty() && !RemoteFiles::isRemote(file);
+    const std::string folder = local ? missingFolderOf(file, options) : std::string();
     const std::string cause = folder.empty() ? file : folder;
     Clock::time_point again;
     {

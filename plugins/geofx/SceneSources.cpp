@@ -86,23 +86,6 @@ std::vector<std::string> outsideSources(const SceneFile& scene, const std::strin
     return errors;
 }
 
-/// One sentence for each file that OSG would hand to a plugin that runs it as a program. OSG chooses plugins by a name's last ending.
-static std::vector<std::string> programsOf(const SceneFile& scene)
-{
-    static const std::set<std::string> programs = {"lua", "js", "py", "python", "v8"};
-    std::vector<std::string> errors;
-    for (const ScenePath& path : filesOf(scene))
-    {
-        if (programs.count(osgDB::getLowerCaseFileExtension(path.path)) == 0) continue;
-        errors.push_back(path.place.message(
-            path.attribute + "=\"" + path.path +
-            "\" is a program, which would be run; name a picture, a raster or a database; or, "
-            "if you trust the scene, start the program with --allow-outside, or give OSG the "
-            "option string \"allowOutside\"."));
-    }
-    return errors;
-}
-
 std::string readSceneText(const std::string& path)
 {
     osgDB::ifstream stream(path.c_str(), std::ios::in | std::ios::binary);
@@ -118,7 +101,6 @@ std::vector<std::string> faultsOfFiles(const SceneFile& scene, const std::string
     const bool anywhere = isAllowedOutside(options);
     std::vector<std::string> errors;
     if (!anywhere) errors = outsidePaths(scene, folder);
-    if (errors.empty() && !anywhere) errors = programsOf(scene);
     if (!errors.empty()) return errors;
     if (RemoteFiles::isRemote(folder)) return unfetchedPaths(scene);
     errors = missingFiles(scene);

@@ -251,27 +251,6 @@ TEST_F(SceneReachPlugin, WhatReachesOutNeedsConsent)
     EXPECT_EQ(there.size(), nowhere.size());
 }
 
-TEST_F(SceneReachPlugin, ProgramsAreNotRun)
-{
-    const std::string mark = (_place / "ran").string();
-    _place.write("scene/l.lua",
-                 "local file = io.open('" + mark + "', 'w')\nfile:write('ran')\nfile:close()\n");
-    fs::copy_file(_place / "scene/l.lua", _place / "scene/P.LUA");
-    for (const std::string& name : {std::string("l.lua"), std::string("P.LUA")})
-    {
-        SCOPED_TRACE(name);
-        const std::string mapping =
-            "<mapping layer='l' west='-158' south='21' east='-157' north='22'/></projectiveMappings>";
-        for (const std::string& effect :
-             {"<projectiveMappings><layer name='l' file='" + name + "'/>" + mapping,
-              "<projectiveMappings><layer name='l' file='" + name + "' kind='value'/>" + mapping,
-              "<panoramaMap palette='" + name + "'/>", "<panoramaMap skyImage='" + name + "'/>"})
-            expectRefused(sceneOf(effect), "is a program, which would be run");
-        expectRefused(sceneOf("", "<database file='" + name + "'/>"), "is a program, which would be run");
-    }
-    EXPECT_FALSE(fs::exists(mark));
-}
-
 TEST_F(SceneReachPlugin, AddressesAndGdalsOwnNamesNeedConsent)
 {
     for (const char* name :
