@@ -24,7 +24,7 @@ namespace osgGeoFX
     All files must lie in a folder or below it. A database may hold objects of the libraries osg, osgAnimation, osgFX,
     osgParticle, osgShadow, osgSim, osgUtil and osgGeoFX. Scripts, image sequences (osg::ImageSequence) and objects of other
     libraries are refused, and a file with them as a whole. A picture has up to 256 MiB of pixels, and a database file up to 256 MiB
-    when it is unpacked. Both are known before the pixels are unpacked.
+    when it is unpacked. A picture's header tells so before its pixels are unpacked; unpacking a database file ends there.
 
     As a ReadFileCallback it stands in the options that OSG's readers pass on, so it meets what these files name in their turn.
     Pictures within files go the same way (see Gate). A refusal is a ReadResult with a reason that is a part of a sentence.
