@@ -23,9 +23,11 @@
 #include <osgGeoFX/offscreen/ImageCapture.h>
 #include <osgGeoFX/scene/EffectCullCallback.h>
 #include <osgViewer/CompositeViewer>
+#include <osgViewer/Renderer>
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <string>
 #include <thread>
 #include <typeinfo>
@@ -43,18 +45,28 @@ constexpr int WIDTH = 80, HEIGHT = 60;
 /// More than there are at a time.
 constexpr unsigned int contexts = 64;
 
+/// For objects that are made from now on. OSG's objects make room for a context when they are first drawn or released there,
+/// without a lock, and a new context tells OSG to make room for no more than there are now.
+void makeRoom()
+{
+    osg::DisplaySettings::instance()->setMaxNumberOfGraphicsContexts(contexts);
+}
+
 constexpr Threading models[] = {osgViewer::ViewerBase::SingleThreaded,
                                 osgViewer::ViewerBase::CullDrawThreadPerContext,
                                 osgViewer::ViewerBase::DrawThreadPerContext,
                                 osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext};
 
-/// Keeps a frame on its way for a while, so that what happens between frames happens while it is drawn.
-class Late : public osg::Camera::DrawCallback
+/// Keeps a frame on its way for a while, so that what happens between frames happens before it is drawn, with all its stages.
+class LateRenderer : public osgViewer::Renderer
 {
 public:
-    explicit Late(int milliseconds) : _time(milliseconds) {}
-    using osg::Camera::DrawCallback::operator();
-    void operator()(osg::RenderInfo&) const override { std::this_thread::sleep_for(_time); }
+    LateRenderer(osg::Camera* camera, int milliseconds) : osgViewer::Renderer(camera), _time(milliseconds) {}
+    void draw() override
+    {
+        std::this_thread::sleep_for(_time);
+        osgViewer::Renderer::draw();
+    }
 
 private:
     const std::chrono::milliseconds _time;
@@ -87,16 +99,21 @@ public:
         traits->height = HEIGHT;
         traits->alpha = 8;
         window.context = new EglGraphicsContext(traits);
+        makeRoom();
         window.view = new osgViewer::View;
         osg::Camera& camera = *window.view->getCamera();
         camera.setGraphicsContext(window.context);
         camera.setViewport(0, 0, WIDTH, HEIGHT);
         camera.setProjectionMatrixAsPerspective(45.0, static_cast<double>(WIDTH) / HEIGHT, 1.0, 1e5);
-        camera.setInitialDrawCallback(new Late(_late));
+        camera.setRenderer(new LateRenderer(&camera, _late));
         window.capture = ImageCapture::attach(&camera);
         window.view->setSceneData(scene);
         look(window.view, 9000.0);
+        // A thread that begins before its context is there finds no functions of OpenGL in it.
+        _viewer->stopThreading();
         _viewer->addView(window.view);
+        _viewer->realize();
+        makeRoom();
         _windows.push_back(window);
     }
     /// With its context.
@@ -116,8 +133,10 @@ public:
         const osg::Vec3d eye(distance * std::sin(turn), -distance * std::cos(turn), 0.4 * distance);
         view->getCamera()->setViewMatrixAsLookAt(eye, osg::Vec3d(), osg::Z_AXIS);
     }
-    void realize() { _viewer->realize(); }
     void frame() { _viewer->frame(++_frames / 1000.0); }
+    /// The picture of the next frame.
+    void request(std::size_t i) { _windows[i].capture->request(); }
+    osg::ref_ptr<osg::Image> take(std::size_t i) { return _windows[i].capture->take(); }
     /// Of the next frame.
     osg::ref_ptr<osg::Image> picture(std::size_t i)
     {
@@ -165,19 +184,21 @@ class LifeAndDeath : public ::testing::TestWithParam<Threading>
 protected:
     void SetUp() override
     {
-        // An osg::Texture makes room for a context when it is first drawn there, without a lock.
-        osg::DisplaySettings::instance()->setMaxNumberOfGraphicsContexts(contexts);
         osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
         traits->width = traits->height = 8;
         const osg::ref_ptr<EglGraphicsContext> context = new EglGraphicsContext(traits);
+        makeRoom();
         if (context->valid()) return;
         if (geofx::test::glIsRequired()) FAIL() << context->error();
         GTEST_SKIP() << context->error();
     }
 
-    static osg::ref_ptr<EffectScene> sceneOf(Effect* effect)
+    static osg::ref_ptr<EffectScene> sceneOf(const osg::ref_ptr<Effect>& effect)
     {
         osg::ref_ptr<EffectScene> scene = new EffectScene;
+        osg::ref_ptr<osg::LightSource> sun = new osg::LightSource;
+        sun->getLight()->setPosition(osg::Vec4(0.3f, 0.2f, 1.0f, 0.0f));
+        scene->addChild(sun);
         scene->addChild(plain());
         scene->addEffect(effect);
         return scene;
@@ -195,7 +216,8 @@ protected:
         plan.reach = 1200.0;
         osg::ref_ptr<CloseUps> effect = new CloseUps;
         effect->setPipeline(pipeline);
-        effect->addCloseUp(randomCloseUp(random, plan));
+        for (int i = 0; i < 5; ++i)
+            effect->addCloseUp(randomCloseUp(random, plan));
         return effect;
     }
     static osg::ref_ptr<SunShadows> shadows()
@@ -211,7 +233,6 @@ protected:
     {
         Windows windows(osgViewer::ViewerBase::SingleThreaded, 0);
         windows.open(scene);
-        windows.realize();
         return windows.picture(0);
     }
     static constexpr int replacements = 10;
@@ -230,7 +251,6 @@ TEST_P(LifeAndDeath, ASceneIsReplacedInItsView)
     const osg::ref_ptr<osg::Image> expected = alone(sceneOf(bird()));
     Windows windows(GetParam(), late);
     windows.open(sceneOf(bird()));
-    windows.realize();
     windows.frame();
     for (int i = 0; i < replacements; ++i)
     {
@@ -247,7 +267,6 @@ TEST_P(LifeAndDeath, ASceneIsReplacedInAGroup)
     const osg::ref_ptr<osg::Group> root = new osg::Group;
     root->addChild(sceneOf(bird()));
     windows.open(root);
-    windows.realize();
     windows.frame();
     for (int i = 0; i < replacements; ++i)
     {
@@ -271,7 +290,6 @@ TEST_P(LifeAndDeath, ACullCallbackIsReplaced)
     };
     terrain->setCullCallback(callback());
     windows.open(terrain);
-    windows.realize();
     windows.frame();
     for (int i = 0; i < replacements; ++i)
     {
@@ -286,13 +304,9 @@ TEST_P(LifeAndDeath, AnEffectIsReplaced)
 {
     Random random(1);
     const osg::ref_ptr<EffectScene> scene = sceneOf(bird());
-    osg::ref_ptr<osg::LightSource> sun = new osg::LightSource;
-    sun->getLight()->setPosition(osg::Vec4(0.3f, 0.2f, 1.0f, 0.0f));
-    scene->addChild(sun);
     const osg::ref_ptr<osg::Image> expected = alone(scene);
     Windows windows(GetParam(), late);
     windows.open(scene);
-    windows.realize();
     windows.frame();
     for (int i = 0; i < replacements; ++i)
     {
@@ -302,13 +316,57 @@ TEST_P(LifeAndDeath, AnEffectIsReplaced)
         else
             effect = closeUps(random, i % 3 ? CloseUps::MULTI_PASS : CloseUps::SINGLE_PASS);
         scene->addEffect(effect);
-        windows.frame();
-        windows.frame();
+        // Also before OpenGL has anything of it.
+        for (int frames = i / 3 % 2; frames >= 0; --frames)
+            windows.frame();
         scene->removeEffect(effect);
         effect = nullptr;
         if (i % 2) windows.frame();
     }
     EXPECT_TRUE(imagesMatch(*windows.picture(0), *expected, {}, "replaced-effect"));
+}
+
+// A frame on its way is drawn whole, with buffers of which OpenGL has nothing yet, though its scene is gone.
+TEST_P(LifeAndDeath, TheLastFrameOfASceneIsWhole)
+{
+    const auto makeScene = [](int kind)
+    {
+        Random random(3);
+        return sceneOf(kind == 0   ? osg::ref_ptr<Effect>(closeUps(random, CloseUps::SINGLE_PASS))
+                       : kind == 1 ? osg::ref_ptr<Effect>(closeUps(random, CloseUps::MULTI_PASS))
+                       : kind == 2 ? osg::ref_ptr<Effect>(shadows())
+                                   : osg::ref_ptr<Effect>(bird()));
+    };
+    // The same in one thread, with a scene that lives.
+    const auto expected = [&](int kind)
+    {
+        Windows windows(osgViewer::ViewerBase::SingleThreaded, 0);
+        windows.open(plain());
+        windows.frame();
+        windows.view(0).setSceneData(makeScene(kind));
+        windows.request(0);
+        windows.frame();
+        return windows.take(0);
+    };
+    const osg::ref_ptr<osg::Image> without = alone(plain());
+    Windows windows(GetParam(), 3 * late);
+    windows.open(plain());
+    for (int kind = 0; kind < 4; ++kind)
+    {
+        SCOPED_TRACE(kind);
+        windows.frame();
+        windows.frame();
+        windows.view(0).setSceneData(makeScene(kind));
+        windows.request(0);
+        windows.frame();
+        windows.view(0).setSceneData(plain());
+        windows.frame();
+        windows.frame();
+        const osg::ref_ptr<osg::Image> last = windows.take(0);
+        ASSERT_TRUE(last);
+        EXPECT_TRUE(imagesMatch(*last, *expected(kind), {}, "last-frame-" + std::to_string(kind)));
+        EXPECT_NE(std::memcmp(last->data(), without->data(), last->getTotalSizeInBytes()), 0);
+    }
 }
 
 TEST_P(LifeAndDeath, AViewGoesWithItsWindow)
@@ -317,11 +375,9 @@ TEST_P(LifeAndDeath, AViewGoesWithItsWindow)
     const osg::ref_ptr<osg::Image> expected = alone(scene);
     Windows windows(GetParam(), late);
     windows.open(scene);
-    windows.realize();
     for (int i = 0; i < 4; ++i)
     {
         windows.open(i % 2 ? scene : sceneOf(bird()));
-        windows.realize();
         windows.frame();
         windows.frame();
         windows.close(1);
@@ -340,7 +396,6 @@ public:
         : _windows(windows), _random(sample), _database(std::move(database))
     {
         open();
-        _windows.realize();
     }
 
     /// A name of what was done.
@@ -544,7 +599,6 @@ private:
     {
         if (_windows.size() >= 3) return;
         _windows.open(newRoot());
-        _windows.realize();
     }
     void close()
     {

@@ -28,12 +28,16 @@ public:
     void releaseGLObjects(osg::State* state) const;
 
 private:
-    struct Block
+    /// A buffer does not hold its entries. So who draws with it holds the block.
+    struct Block : public osg::Referenced
     {
         osg::ref_ptr<osg::UniformBufferObject> buffer;
         std::vector<osg::ref_ptr<osg::Vec4Array>> items;
+
+    protected:
+        ~Block() override = default;
     };
-    std::vector<Block> _blocks;
+    std::vector<osg::ref_ptr<Block>> _blocks;
 };
 
 } // namespace osgGeoFX
