@@ -355,6 +355,17 @@ TEST_F(SequenceRasters, WhatIsWrongIsSaid)
     EXPECT_TRUE(raster->steps->read(2, error));
 }
 
+// A virtual dataset stands on each of these when the reader finds the fault, and must go before the file does.
+TEST_F(SequenceRasters, StepsWithoutAPlaceAreRefused)
+{
+    TestRaster bands(columns, rows, 3);
+    bands.fill([](int column, int row, int band) { return column + row + band; });
+    const std::string nowhere = bands.write(path("nowhere.tif"));
+    EXPECT_TRUE(contains(faultOf(nowhere), "no georeference")) << nowhere;
+    bands.placed(west, south + 4.0, 0.1, 0.1);
+    EXPECT_TRUE(contains(faultOf(bands.write(path("unnamed.tif"))), "no coordinate reference system"));
+}
+
 TEST_F(SequenceRasters, FilesAndVariables)
 {
     const std::string file = write(path("a:b.nc"));
