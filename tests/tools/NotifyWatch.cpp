@@ -41,6 +41,9 @@ NotifyWatch::NotifyWatch() : _formerLevel(osg::getNotifyLevel()), _formerHandler
 {
     // NVIDIA's driver says of most programs that the state at the first draw is not the one that it had guessed.
     ignore("is being recompiled based on GL state");
+    // OSG fills the buffers of deleted tiles anew when it has their size. Mesa counts such updates and calls them slow.
+    // The deletion goes by the clock, so the message comes in some runs only.
+    ignore("to update a GL_STATIC_DRAW buffer");
     // Whatever OSG_NOTIFY_LEVEL says, they must reach us.
     if (_formerLevel < osg::NOTICE) osg::setNotifyLevel(osg::NOTICE);
     osg::setNotifyHandler(new Handler(*this));
