@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/raster/ColorRampFile.h>
+#include <osgGeoFX/raster/detail/ColorNames.h>
 
 #include <algorithm>
 #include <array>
@@ -27,13 +28,11 @@ struct NamedColor
     std::array<int, 3> rgb;
 };
 
-constexpr NamedColor namedColors[] = {
-    {"white", {255, 255, 255}}, {"black", {0, 0, 0}},      {"red", {255, 0, 0}},
-    {"green", {0, 255, 0}},     {"blue", {0, 0, 255}},     {"yellow", {255, 255, 0}},
-    {"magenta", {255, 0, 255}}, {"cyan", {0, 255, 255}},   {"aqua", {0, 191, 191}},
-    {"grey", {191, 191, 191}},  {"gray", {191, 191, 191}}, {"orange", {255, 127, 0}},
-    {"brown", {191, 127, 63}},  {"purple", {127, 0, 255}}, {"violet", {127, 0, 255}},
-    {"indigo", {0, 127, 255}},
+/// The colors that gdaldem has under other values than X11.
+constexpr NamedColor gdaldemColors[] = {
+    {"aqua", {0, 191, 191}},   {"grey", {191, 191, 191}}, {"gray", {191, 191, 191}},
+    {"orange", {255, 127, 0}}, {"brown", {191, 127, 63}}, {"purple", {127, 0, 255}},
+    {"violet", {127, 0, 255}}, {"indigo", {0, 127, 255}},
 };
 
 std::string lower(std::string text)
@@ -99,16 +98,32 @@ osg::Vec4 partsToColor(const std::string& red, const std::string& green, const s
 
 osg::Vec4 namedColor(const std::string& name)
 {
-    std::string known;
-    for (const NamedColor& color : namedColors)
-    {
+    if (const auto color = ColorNames::x11(name)) return *color;
+    throw Refusal{
+        "the color " + inQuotes(name) +
+        " is not known; write red, green and blue as numbers, #rrggbb, or a name of X11 such as darkgreen."};
+}
+
+/// The colors of names in files for gdaldem, where they differ from those of X11.
+std::optional<osg::Vec4> nameOfGdaldem(const std::string& name)
+{
+    for (const NamedColor& color : gdaldemColors)
         if (lower(name) == color.name)
-            return {static_cast<float>(color.rgb[0]) / 255.0f, static_cast<float>(color.rgb[1]) / 255.0f,
-                    static_cast<float>(color.rgb[2]) / 255.0f, 1.0f};
-        known += std::string(known.empty() ? "" : ", ") + color.name;
+            return osg::Vec4(static_cast<float>(color.rgb[0]) / 255.0f,
+                             static_cast<float>(color.rgb[1]) / 255.0f,
+                             static_cast<float>(color.rgb[2]) / 255.0f, 1.0f);
+    return std::nullopt;
+}
+
+/// Where a line's comment begins, or npos. A color such as #ff8000 begins none.
+std::size_t commentOf(const std::string& line)
+{
+    for (std::size_t at = line.find('#'); at != std::string::npos; at = line.find('#', at + 1))
+    {
+        const std::size_t end = std::min(line.find_first_of(" ,\t\r;", at), line.size());
+        if (at == 0 || !ColorNames::hexadecimal(line.substr(at, end - at))) return at;
     }
-    throw Refusal{"the color " + inQuotes(name) +
-                  " is not known; write red, green and blue as numbers, or one of " + known + "."};
+    return std::string::npos;
 }
 
 /// Reads a file's lines, one after the other.
@@ -120,9 +135,11 @@ public:
     void take(const std::string& line)
     {
         if (!line.empty() && line[0] == '#') checkColorModel(line);
-        Words words = split(line.substr(0, line.find('#')), " ,\t:\r");
-        if (words.empty() || words[0][0] == '/') return;
-        if (_isCpt)
+        Words words = split(line.substr(0, commentOf(line)), " ,\t:\r");
+        if (words.empty() || words[0][0] == '/' || (words.size() == 1 && lower(words[0]) == "end")) return;
+        if (lower(words[0]) == "interpolation")
+            takeInterpolation(words);
+        else if (_isCpt)
             takeSlice(words);
         else
             takeStop(words);
@@ -130,12 +147,19 @@ public:
 
     osg::ref_ptr<ColorTable> finish()
     {
+        if (_isCpt) joinSlices();
         if (_stops.empty())
             throw Refusal{"there are no colors; write a line for each value, such as 100 0 128 0."};
+        const auto below = [](const Stop& a, const Stop& b) { return a.value < b.value; };
+        // In a list that descends, the first of two lines with one value is the upper side of the jump.
+        if (std::is_sorted(_stops.rbegin(), _stops.rend(), below)) std::reverse(_stops.begin(), _stops.end());
+        std::stable_sort(_stops.begin(), _stops.end(), below);
+        if (_discrete) makeDiscrete();
         addOutside();
         osg::ref_ptr<ColorTable> table = new ColorTable;
         table->setStops(_stops);
         table->setNoDataColor(_noData);
+        table->setMode(_mode);
         return table;
     }
 
@@ -150,14 +174,31 @@ private:
             throw Refusal{"the COLOR_MODEL is not RGB; convert the file to RGB."};
     }
 
+    /// A line of the files that QGIS exports.
+    void takeInterpolation(const Words& words)
+    {
+        const std::string kind = words.size() == 2 ? lower(words[1]) : "";
+        if (kind == "exact")
+            _mode = ColorTable::EXACT;
+        else if (kind == "discrete")
+            _discrete = true;
+        else if (kind != "interpolated")
+            throw Refusal{"the interpolation is not known; write INTERPOLATED, DISCRETE or EXACT."};
+    }
+
     void takeStop(const Words& words)
     {
         if (words.size() < 2)
             throw Refusal{inQuotes(words[0]) + " has no color; write value, red, green, blue."};
         osg::Vec4 color;
         std::size_t next = 2;
-        if (!number(words[1]))
-            color = namedColor(words[1]);
+        if (const auto hexadecimal = ColorNames::hexadecimal(words[1]))
+            color = *hexadecimal;
+        else if (!number(words[1]))
+        {
+            const auto named = nameOfGdaldem(words[1]);
+            color = named ? *named : namedColor(words[1]);
+        }
         else if (words.size() < 4)
             throw Refusal{"the color is not complete; write value, red, green, blue."};
         else
@@ -166,8 +207,13 @@ private:
             next = 4;
         }
         if (words.size() > next) color[3] = part(words[next]);
-        if (lower(words[0]) == "nv")
+        const std::string key = lower(words[0]);
+        if (key == "nv")
             _noData = color;
+        else if (key == "default")
+            _below = _above = color;
+        else if (key == "inf" && _discrete)
+            _last = color;
         else
             _stops.push_back({stopValue(words[0]), color});
     }
@@ -184,6 +230,26 @@ private:
             throw Refusal{inQuotes(word) +
                           " needs the range of the raster's values; give it, or write plain values."};
         return _range->first * (1.0 - *value / 100.0) + _range->second * (*value / 100.0);
+    }
+
+    /// Each color of a DISCRETE table reaches up to its own value, that value included. So the next color begins a
+    /// little above it, a texel of a row. The last color may reach on.
+    void makeDiscrete()
+    {
+        const double margin = marginOf(_stops);
+        Stops steps{_stops.front()};
+        for (std::size_t i = 1; i < _stops.size(); ++i)
+            steps.push_back({_stops[i - 1].value + margin, _stops[i].color});
+        steps.push_back({_stops.back().value + margin, _last ? *_last : osg::Vec4()});
+        _stops = steps;
+        _mode = ColorTable::STEPS;
+    }
+
+    /// More than the distance of texels in a row of 1024; of a single value, a step of 32-bit numbers.
+    static double marginOf(const Stops& stops)
+    {
+        const double low = stops.front().value, high = stops.back().value;
+        return std::max((high - low) / 512.0, std::abs(high) * 1e-6 + 1e-30);
     }
 
     void takeSlice(Words words)
@@ -206,21 +272,55 @@ private:
                                             [](const std::string& word) { return word[0] == ';'; });
             label != words.end())
             words.erase(label, words.end());
-        if (words.size() == 5 || words.size() == 9)
+        if (words.size() % 2 == 1)
             if (words.back() == "L" || words.back() == "U" || words.back() == "B") words.pop_back();
+        if (words.size() == 2) return takeCategory(words);
         if (words.size() != 4 && words.size() != 8)
             throw Refusal{"the line is not z0 color z1 color; write the colors as R G B or R/G/B."};
         const auto middle = words.begin() + static_cast<std::ptrdiff_t>(words.size() / 2);
         const std::optional<double> from = number(words[0]), to = number(*middle);
-        if (!from || !to || *from >= *to)
+        if (!from || !to || *from == *to)
             throw Refusal{"the slice goes from " + inQuotes(words[0]) + " to " + inQuotes(*middle) +
-                          "; write two numbers, the smaller one first."};
-        if (!_stops.empty() && *from < _stops.back().value)
-            throw Refusal{"the slice begins below the end of the one before; put the lines in order."};
-        const Stop first{*from, sliceColor({words.begin() + 1, middle})};
-        if (_stops.empty() || _stops.back().value < first.value || _stops.back().color != first.color)
-            _stops.push_back(first);
-        _stops.push_back({*to, sliceColor({middle + 1, words.end()})});
+                          "; write two different numbers."};
+        Slice slice{{*from, sliceColor({words.begin() + 1, middle})},
+                    {*to, sliceColor({middle + 1, words.end()})}};
+        if (*from > *to) std::swap(slice.low, slice.high);
+        if (!_stops.empty())
+            throw Refusal{"the line is a slice, and those before are classes; write one kind of lines."};
+        if (!_slices.empty())
+        {
+            const Slice& before = _slices.back();
+            const bool above = slice.low.value >= before.high.value;
+            const bool below = slice.high.value <= before.low.value;
+            if ((!above && !below) || (_slices.size() > 1 && below != _descends))
+                throw Refusal{"the slice does not begin where the one before ends; put the lines in order."};
+            _descends = below;
+        }
+        _slices.push_back(slice);
+    }
+
+    /// A line of a categorical table.
+    void takeCategory(const Words& words)
+    {
+        const std::optional<double> value = number(words[0]);
+        if (!value)
+            throw Refusal{"the class " + inQuotes(words[0]) + " is not a number; write the raster's values."};
+        if (!_slices.empty())
+            throw Refusal{"the line is a class, and those before are slices; write one kind of lines."};
+        _stops.push_back({*value, sliceColor({words[1]})});
+        _mode = ColorTable::EXACT;
+    }
+
+    void joinSlices()
+    {
+        if (_descends) std::reverse(_slices.begin(), _slices.end());
+        for (const Slice& slice : _slices)
+        {
+            if (_stops.empty() || _stops.back().value < slice.low.value ||
+                _stops.back().color != slice.low.color)
+                _stops.push_back(slice.low);
+            _stops.push_back(slice.high);
+        }
     }
 
     static osg::Vec4 sliceColor(const Words& words)
@@ -229,14 +329,16 @@ private:
         if (parts.size() == 3) return partsToColor(parts[0], parts[1], parts[2]);
         if (parts.size() != 1) throw Refusal{"the color is not complete; write R G B or R/G/B."};
         if (parts[0] == "-") return {}; // "leave it unpainted"
+        if (const auto hexadecimal = ColorNames::hexadecimal(parts[0])) return *hexadecimal;
         return number(parts[0]) ? partsToColor(parts[0], parts[0], parts[0]) : namedColor(parts[0]);
     }
 
-    /// A .cpt's colors below and above: with a little of its ends' colors between, for they count from beyond the ends.
+    /// The colors below and above: with a little of the ends' colors between, for they count from beyond the ends.
     void addOutside()
     {
+        if (_mode != ColorTable::LINEAR) return;
         const Stop first = _stops.front(), last = _stops.back();
-        const double margin = (last.value - first.value) / 512.0;
+        const double margin = marginOf(_stops);
         if (_below && *_below != first.color)
             _stops.insert(_stops.begin(), {{first.value - 2.0 * margin, *_below},
                                            {first.value - margin, *_below},
@@ -248,11 +350,21 @@ private:
         }
     }
 
+    /// A line z0 color z1 color.
+    struct Slice
+    {
+        Stop low, high;
+    };
+
     std::optional<ColorRampFile::Range> _range;
     bool _isCpt;
+    bool _discrete = false; ///< QGIS's way of writing steps
+    bool _descends = false; ///< whether the slices do
+    ColorTable::Mode _mode = ColorTable::LINEAR;
     Stops _stops;
+    std::vector<Slice> _slices;
     osg::Vec4 _noData;
-    std::optional<osg::Vec4> _below, _above;
+    std::optional<osg::Vec4> _below, _above, _last;
 };
 
 std::string text(double value)

@@ -162,6 +162,7 @@ void readTable(const SceneTable& table)
     else
         read = ColorRampFile::read(table.file.path, table.range, reason);
     if (!read) fail(table.file.place, reason);
+    if (read->getMode() != ColorTable::LINEAR) table.table->setMode(read->getMode());
     table.table->setStops(read->getStops());
     if (table.table->getNoDataColor() == osg::Vec4()) table.table->setNoDataColor(read->getNoDataColor());
 }

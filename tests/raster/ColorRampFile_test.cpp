@@ -119,6 +119,78 @@ TEST(ColorRampFile, GmtTables)
     }
 }
 
+TEST(ColorRampFile, GmtTablesDescendAndHaveNamesOfX11)
+{
+    const auto table = readText("20 tomato3 10 DarkSlateGray1 # down\n10 gray50 0 #ff8000\n", "t.cpt");
+    ASSERT_EQ(table->getStops().size(), 4u);
+    EXPECT_EQ(table->at(0), color255(255, 128, 0));
+    EXPECT_EQ(table->at(20), color255(205, 80, 57));
+    EXPECT_EQ(table->at(10), color255(151, 255, 255));
+    EXPECT_LT(difference(osg::Vec4ub(127, 127, 127, 255), table->at(9.999999)), 0.01);
+    // Slices that ascend, listed from the top.
+    const auto listed = readText("10 red 20 red\n0 blue 10 blue\n", "t.cpt");
+    EXPECT_EQ(listed->at(9.9), blue);
+    EXPECT_EQ(listed->at(10), red);
+    // The names of both formats differ in some colors.
+    EXPECT_EQ(readText("0 brown 1 purple\n", "t.cpt")->at(0), color255(165, 42, 42));
+    EXPECT_EQ(readText("0 brown\n")->at(0), color255(191, 127, 63));
+}
+
+TEST(ColorRampFile, CategoricalGmtTablesAreClasses)
+{
+    const auto table = readText("1 forestgreen ;Forest\n11 0/0/255 ;Water\n2 #ffff00\nN 128\n", "t.cpt");
+    EXPECT_EQ(table->getMode(), ColorTable::EXACT);
+    EXPECT_EQ(table->at(1), color255(34, 139, 34));
+    EXPECT_EQ(table->at(2), color255(255, 255, 0));
+    EXPECT_EQ(table->at(11), blue);
+    EXPECT_EQ(table->at(3), clear);
+}
+
+TEST(ColorRampFile, TablesThatQgisExports)
+{
+    const std::string head = "# QGIS Generated Color Map Export File\nINTERPOLATION:";
+    const auto mixed = readText(head + "INTERPOLATED\n0,255,0,0,255,0 m\n10,0,0,255,255,10 #m\n");
+    EXPECT_EQ(mixed->getMode(), ColorTable::LINEAR);
+    EXPECT_EQ(mixed->at(5), osg::Vec4(0.5f, 0, 0.5f, 1));
+    const auto classes = readText(head + "EXACT\n1,255,0,0,255,forest: old, mixed\n2,0,0,255,128,water\n");
+    EXPECT_EQ(classes->getMode(), ColorTable::EXACT);
+    EXPECT_EQ(classes->at(2), color255(0, 0, 255, 128));
+    EXPECT_EQ(classes->at(1.5), clear);
+    // A color is that of the values up to its own, as QGIS paints them.
+    const auto steps = readText(head + "DISCRETE\n10,255,0,0,255,<= 10\n20,0,255,0,255,10 - 20\n"
+                                       "inf,0,0,255,255,> 20\n");
+    EXPECT_EQ(steps->getMode(), ColorTable::STEPS);
+    std::vector<osg::Vec4ub> row(1024);
+    const auto [low, high] = steps->range();
+    steps->row(low, high, row.data(), 1024);
+    const std::pair<double, osg::Vec4> expected[] = {{-5, red},   {10, red},  {11, green},
+                                                     {20, green}, {21, blue}, {900, blue}};
+    for (const auto& [value, color] : expected)
+    {
+        EXPECT_EQ(steps->at(value), color) << value;
+        const double place = std::clamp((value - low) / (high - low), 0.0, 1.0) * 1023.0;
+        EXPECT_LT(difference(row[static_cast<std::size_t>(std::floor(place + 0.5))], color), 1.0) << value;
+    }
+    const auto ends = readText(head + "DISCRETE\n10,255,0,0,255,a\n20,0,255,0,255,b\n");
+    EXPECT_EQ(ends->at(20), green);
+    EXPECT_EQ(ends->at(21), clear);
+    const auto two = readText(head + "DISCRETE\n10,255,0,0,255,a\ninf,0,255,0,255,b\n");
+    EXPECT_EQ(two->at(10), red);
+    EXPECT_EQ(two->at(10.1), green);
+}
+
+TEST(ColorRampFile, RulesOfGrass)
+{
+    const auto table = readText("30 255:0:0\n20 blue\n20 0:255:0\n10 green\nnv white\ndefault #00f\nend\n");
+    EXPECT_EQ(table->at(20), blue);
+    EXPECT_LT(difference(osg::Vec4ub(0, 255, 0, 255), table->at(19.999999)), 0.01);
+    EXPECT_EQ(table->at(30), red);
+    EXPECT_EQ(table->at(40), blue);
+    EXPECT_EQ(table->at(0), blue);
+    EXPECT_EQ(table->getNoDataColor(), osg::Vec4(1, 1, 1, 1));
+    EXPECT_EQ(readText("0 #ff000080 # half\n")->at(0), color255(255, 0, 0, 128));
+}
+
 /// The sentence after the file's name with which a text is refused.
 std::string refusal(const std::string& text, const std::string& name = "ramp.txt")
 {
@@ -140,10 +212,13 @@ TEST(ColorRampFile, RefusesWithFileLineAndMend)
     EXPECT_EQ(refusal("5 1 2 256\n"), ":1: the color has \"256\"; write a number from 0 to 255.");
     EXPECT_EQ(refusal("5 1 -2 3\n"), ":1: the color has \"-2\"; write a number from 0 to 255.");
     EXPECT_EQ(refusal("5 1 2 3 solid\n"), ":1: the color has \"solid\"; write a number from 0 to 255.");
-    EXPECT_NE(refusal("5 pink\n")
-                  .find(":1: the color \"pink\" is not known; write red, green and blue as numbers, or "
-                        "one of white, black, red,"),
-              std::string::npos);
+    EXPECT_EQ(refusal("5 puce\n"),
+              ":1: the color \"puce\" is not known; write red, green and blue as numbers, "
+              "#rrggbb, or a name of X11 such as darkgreen.");
+    EXPECT_EQ(refusal("INTERPOLATION:CUBIC\n"),
+              ":1: the interpolation is not known; write INTERPOLATED, DISCRETE or EXACT.");
+    EXPECT_EQ(refusal("INTERPOLATION:EXACT\ninf,1,2,3,255,\n"),
+              ":2: the value is \"inf\"; write a number, a percentage or nv.");
     EXPECT_EQ(refusal("101% red\n"), ":1: the percentage is \"101%\"; write 0% to 100%.");
     EXPECT_EQ(refusal("50% red\n"),
               ":1: \"50%\" needs the range of the raster's values; give it, or write plain values.");
@@ -160,10 +235,17 @@ TEST(ColorRampFile, RefusesWithFileLineAndMend)
 TEST(ColorRampFile, RefusesGmtTablesWithFileLineAndMend)
 {
     EXPECT_EQ(refusal("# COLOR_MODEL = HSV\n"), ":1: the COLOR_MODEL is not RGB; convert the file to RGB.");
-    EXPECT_EQ(refusal("2 1 0 3\n", "t.cpt"), ":1: the slice goes from \"2\" to \"0\"; write two numbers, the "
-                                             "smaller one first.");
-    EXPECT_EQ(refusal("0 red 1 red\n0.5 red 2 red\n", "t.cpt"),
-              ":2: the slice begins below the end of the one before; put the lines in order.");
+    EXPECT_EQ(refusal("2 1 2 3\n", "t.cpt"),
+              ":1: the slice goes from \"2\" to \"2\"; write two different numbers.");
+    const char* const order = "the slice does not begin where the one before ends; put the lines in order.";
+    EXPECT_EQ(refusal("0 red 1 red\n0.5 red 2 red\n", "t.cpt"), std::string(":2: ") + order);
+    EXPECT_EQ(refusal("0 red 1 red\n1 red 2 red\n-1 red 0 red\n", "t.cpt"), std::string(":3: ") + order);
+    EXPECT_EQ(refusal("0 red 1 red\n2 red\n", "t.cpt"),
+              ":2: the line is a class, and those before are slices; write one kind of lines.");
+    EXPECT_EQ(refusal("2 red\n0 red 1 red\n", "t.cpt"),
+              ":2: the line is a slice, and those before are classes; write one kind of lines.");
+    EXPECT_EQ(refusal("forest red\n", "t.cpt"),
+              ":1: the class \"forest\" is not a number; write the raster's values.");
     EXPECT_EQ(refusal("0 red 1\n", "t.cpt"),
               ":1: the line is not z0 color z1 color; write the colors as R G B or R/G/B.");
     EXPECT_EQ(refusal("0 1/2 1 1/2/3\n", "t.cpt"), ":1: the color is not complete; write R G B or R/G/B.");
