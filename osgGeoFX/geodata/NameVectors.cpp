@@ -3,6 +3,7 @@
 #include <osgGeoFX/geodata/NameVectors.h>
 
 #include <osgGeoFX/geodata/detail/FrameRaster.h>
+#include <osgGeoFX/geodata/detail/Lengths.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
 
@@ -24,7 +25,6 @@ namespace
 
 using Places = std::vector<osg::Vec3d>;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double metresPerFoot = 0.3048;
 
 /// Which fields of a layer tell what; −1: none.
 struct Fields
@@ -70,11 +70,12 @@ std::optional<double> numberOf(const OGRFeature& feature, int field, std::string
 
 double heightOf(const OGRFeature& feature, int field)
 {
-    std::string unit;
-    const auto number = numberOf(feature, field, unit);
-    if (!number) return unknown;
-    const bool feet = unit.find("ft") != std::string::npos || unit.find('\'') != std::string::npos;
-    return *number * (feet ? metresPerFoot : 1.0);
+    if (field < 0 || !feature.IsFieldSetAndNotNull(field)) return unknown;
+    if (const auto metres = Lengths::read(feature.GetFieldAsString(field)); metres && std::isfinite(*metres))
+        return *metres;
+    // Words that are no unit, such as "m (about)".
+    std::string rest;
+    return numberOf(feature, field, rest).value_or(unknown);
 }
 
 /// The middle of an area along its longer axis, with places where the area is at its widest: the means of slices across the axis.

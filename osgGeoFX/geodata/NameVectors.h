@@ -30,7 +30,7 @@ struct OSGGEOFXDATA_EXPORT NameVectors
 
         Places are degrees of longitude and latitude if the frame is a globe, else metres in the frame's `wkt`; the third coordinate is the
         height, metres, from the field or the geometry, or not a number. NamePlacement makes them world coordinates. A field
-        that is not a number counts as missing; "ft" behind a height makes it feet.
+        that is not a number counts as missing. A height may have a unit: "2,014 ft", "2 014 m".
 
         If it fails, or if the file has no name, `names` stays unchanged and a sentence in `error` names file and remedy. Thread-safe. */
     static bool read(const std::string& file, const Options& options, const MappingFrame& frame,

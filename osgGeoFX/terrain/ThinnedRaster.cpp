@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/ThinnedRaster.h>
 
+#include <osgGeoFX/geodata/detail/Lengths.h>
 #include <osgGeoFX/geodata/detail/RasterSource.h>
 #include <osgGeoFX/terrain/detail/WaterFinder.h>
 
@@ -46,19 +47,19 @@ DatasetPtr open(const std::string& file)
 /// From the values of a band to metres.
 struct HeightScale
 {
-    explicit HeightScale(GDALRasterBand& band) : scale(band.GetScale()), offset(band.GetOffset())
+    HeightScale(GDALDataset& dataset, const std::string& file)
     {
-        const char* unit = band.GetUnitType();
-        if (unit && (STARTS_WITH_CI(unit, "ft") || STARTS_WITH_CI(unit, "foot") ||
-                     STARTS_WITH_CI(unit, "feet") || STARTS_WITH_CI(unit, "US survey foot")))
-            metres = 0.3048;
-        if (scale == 0.0) scale = 1.0;
+        GDALRasterBand& band = *dataset.GetRasterBand(1);
+        scale = band.GetScale() != 0.0 ? band.GetScale() : 1.0;
+        offset = band.GetOffset();
+        const OGRSpatialReference* const srs = dataset.GetSpatialRef();
+        metres = Lengths::metresPerHeight(band, srs ? *srs : OGRSpatialReference(), file);
     }
     double height(double value) const { return (value * scale + offset) * metres; }
     /// The value of the sea's surface.
     double surface() const { return -offset / scale; }
 
-    double scale, offset, metres = 1.0;
+    double scale = 1.0, offset = 0.0, metres = 1.0;
 };
 
 void takeScale(GDALRasterBand& from, GDALRasterBand& to)
@@ -71,20 +72,20 @@ void takeScale(GDALRasterBand& from, GDALRasterBand& to)
     if (from.GetUnitType() && *from.GetUnitType()) to.SetUnitType(from.GetUnitType());
 }
 
-bool hasSeaFloor(GDALRasterBand& band)
+bool hasSeaFloor(GDALDataset& dataset, const std::string& file)
 {
     GdalErrorScope errors;
     double range[2] = {0.0, 0.0};
     // Approximate: from overviews or some of the blocks, where the raster is large.
-    if (band.ComputeRasterMinMax(TRUE, range) != CE_None) return false;
-    return HeightScale(band).height(range[0]) < -leastDepth;
+    if (dataset.GetRasterBand(1)->ComputeRasterMinMax(TRUE, range) != CE_None) return false;
+    return HeightScale(dataset, file).height(range[0]) < -leastDepth;
 }
 
 /// Gives the sea of a raster the height 0.
 void flattenSea(GDALDataset& dataset, const std::string& file, double spacing)
 {
     GDALRasterBand& band = *dataset.GetRasterBand(1);
-    const HeightScale scale(band);
+    const HeightScale scale(dataset, file);
     int known = 0;
     const double none = band.GetNoDataValue(&known);
     const int columns = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
@@ -144,7 +145,7 @@ ThinnedRaster::Size ThinnedRaster::look(const std::string& file)
     const double middle = osg::DegreesToRadians(0.5 * (footprint.south + footprint.north));
     return {dataset->GetRasterXSize(), dataset->GetRasterYSize(),
             metre * std::min(footprint.stepX * std::cos(middle), footprint.stepY),
-            hasSeaFloor(*dataset->GetRasterBand(1))};
+            hasSeaFloor(*dataset, file)};
 }
 
 ThinnedRaster::Cut ThinnedRaster::cut(const std::string& file, const std::vector<osg::Vec2d>& places,
@@ -228,8 +229,7 @@ void ThinnedRaster::write(const std::string& file, const Cut& cut, const std::st
     const bool made = copy && !misused;
     // GDAL leaves them out where the type changes.
     if (made) takeScale(*dataset->GetRasterBand(1), *copy->GetRasterBand(1));
-    if (made && hasSeaFloor(*copy->GetRasterBand(1)))
-        flattenSea(*copy, unfinished, look(file).spacing * cut.factor);
+    if (made && hasSeaFloor(*copy, file)) flattenSea(*copy, unfinished, look(file).spacing * cut.factor);
     copy.reset(); // Writes what is left.
     std::error_code fault;
     if (made && !errors.failed()) std::filesystem::rename(unfinished, output, fault);

@@ -65,7 +65,7 @@ TEST_F(NameVectorsTest, PointsWithTheirFields)
 {
     const std::vector<MapName> names = readAll(collection(
         feature(R"("name":"Matterhorn","ele":4478,"natural":"peak","importance":9.5)", point) + "," +
-        feature(R"("name":"Kaʻala","ele":"4025 ft")", R"({"type":"Point","coordinates":[-158.14,21.5]})") +
+        feature(R"("name":"Kaʻala","ele":"4,025 ft")", R"({"type":"Point","coordinates":[-158.14,21.5]})") +
         "," +
         feature(R"("name":"Two","ele":"about high")",
                 R"({"type":"MultiPoint","coordinates":[[1,2,300],[3,4,310]]})") +

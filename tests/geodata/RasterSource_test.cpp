@@ -3,6 +3,7 @@
 //
 // Sampling one raster on lattices: every kind of file that people have.
 #include <osgGeoFX/geodata/detail/RasterSource.h>
+#include <tools/NotifyWatch.h>
 #include <tools/RandomSamples.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
@@ -178,8 +179,15 @@ TEST(RasterHeights, ScaleAndOffset)
 TEST(RasterHeights, Feet)
 {
     const TempDir folder;
-    for (const auto& [unit, metres] : std::vector<std::pair<std::string, double>>{
-             {"ft", 0.3048}, {"US survey foot", 1200.0 / 3937.0}, {"m", 1.0}, {"", 1.0}})
+    for (const auto& [unit, metres] :
+         std::vector<std::pair<std::string, double>>{{"ft", 0.3048},
+                                                     {"US survey foot", 1200.0 / 3937.0},
+                                                     {"ftUS", 1200.0 / 3937.0},
+                                                     {"dm", 0.1},
+                                                     {"cm", 0.01},
+                                                     {"km", 1000.0},
+                                                     {"m", 1.0},
+                                                     {"", 1.0}})
     {
         TestRaster raster = withHole(10000.0, -9999.0);
         raster.dataset().GetRasterBand(1)->SetUnitType(unit.c_str());
@@ -189,6 +197,25 @@ TEST(RasterHeights, Feet)
     raster.dataset().GetRasterBand(1)->SetUnitType("ft");
     raster.dataset().GetRasterBand(1)->SetScale(5.0);
     expectHole(raster.write(folder / "scaled.tif"), 3048.0f);
+}
+
+TEST(RasterHeights, AnUnknownUnitIsNamedOnce)
+{
+    const TempDir folder;
+    TestRaster raster = withHole(100.0, -9999.0);
+    raster.dataset().GetRasterBand(1)->SetUnitType("cubits");
+    const std::string file = raster.write(folder / "dem.tif");
+    NotifyWatch watch;
+    const auto messages = watch.messagesOf(
+        [&]
+        {
+            expectHole(file, 100.0f);
+            expectHole(file, 100.0f);
+        });
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_NE(messages[0].find(file + ": the unit of its heights, \"cubits\", is not known."),
+              std::string::npos)
+        << messages[0];
 }
 
 TEST(RasterHeights, FeetOfACompoundCrs)

@@ -341,19 +341,3 @@ TEST(BuildingMesh, BlocksTakeInWhatStandsTogether)
     EXPECT_EQ(rows, 1);
     EXPECT_EQ(alone, 1);
 }
-
-TEST(BuildingMesh, LengthsInWords)
-{
-    const auto metres = [](const char* text, HeightUnit unit = HeightUnit::METRES)
-    {
-        return lengthInWords(text, unit).value_or(-1.0);
-    };
-    EXPECT_DOUBLE_EQ(metres("12.5"), 12.5);
-    EXPECT_DOUBLE_EQ(metres("12.5", HeightUnit::FEET), 3.81);
-    EXPECT_DOUBLE_EQ(metres("12.5 m", HeightUnit::FEET), 12.5);
-    EXPECT_DOUBLE_EQ(metres("40 ft"), 12.192);
-    EXPECT_DOUBLE_EQ(metres("12'6\""), 3.81);
-    EXPECT_DOUBLE_EQ(metres("high"), -1.0);
-    EXPECT_DOUBLE_EQ(metres("12 storeys"), -1.0);
-    EXPECT_TRUE(std::isnan(metres("nan")));
-}

@@ -3,6 +3,7 @@
 #include <osgGeoFX/geodata/detail/RasterSource.h>
 
 #include <osgGeoFX/geodata/detail/LatticeTransformer.h>
+#include <osgGeoFX/geodata/detail/Lengths.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
 
@@ -25,15 +26,6 @@ namespace
 constexpr double TRANSFORM_TOLERANCE = 1e-4;
 constexpr double WARP_MEMORY_BYTES =
     48.0 * 1024 * 1024; // a constant: chunks decide the last bits of a sample
-
-double metresPerHeightUnit(const std::string& bandUnit, const OGRSpatialReference& srs)
-{
-    if (EQUAL(bandUnit.c_str(), "ft") || EQUAL(bandUnit.c_str(), "foot") || EQUAL(bandUnit.c_str(), "feet"))
-        return 0.3048;
-    if (EQUAL(bandUnit.c_str(), "us-ft") || EQUAL(bandUnit.c_str(), "US survey foot")) return 1200.0 / 3937.0;
-    if (bandUnit.empty() && srs.IsCompound()) return srs.GetTargetLinearUnits("COMPD_CS|VERT_CS");
-    return 1.0;
-}
 
 } // namespace
 
@@ -135,7 +127,7 @@ void RasterSource::openAs(RasterKind kind)
     {
         if (band->GetScale() != 1.0 || band->GetOffset() != 0.0)
             translate({"-b", "1", "-ot", "Float32", "-unscale"});
-        const double metres = metresPerHeightUnit(band->GetUnitType(), _srs);
+        const double metres = Lengths::metresPerHeight(*band, _srs, _file);
         if (metres != 1.0)
             translate({"-b", "1", "-ot", "Float32", "-scale", "0", "1", "0", CPLSPrintf("%.17g", metres)});
     }

@@ -5,6 +5,7 @@
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/CoordinateText.h>
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
+#include <osgGeoFX/geodata/detail/Lengths.h>
 
 #include <algorithm>
 #include <cctype>
@@ -19,7 +20,6 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr double METRES_PER_FOOT = 0.3048;
 /// The highest that counts as a height; towers have reached 828 m.
 constexpr double TALLEST = 1500.0;
 /// Less ground than a shed's, square metres: no building.
@@ -319,13 +319,13 @@ private:
         // Numbers as they are, without a detour by text.
         const OGRFieldType type =
             fields.height >= 0 ? feature.GetFieldDefnRef(fields.height)->GetType() : OFTString;
+        const double metresPerPlain = _options.unit == HeightUnit::FEET ? Lengths::METRES_PER_FOOT : 1.0;
         std::optional<double> height;
         if ((type == OFTReal || type == OFTInteger || type == OFTInteger64) &&
             feature.IsFieldSetAndNotNull(fields.height))
-            height = feature.GetFieldAsDouble(fields.height) *
-                     (_options.unit == HeightUnit::FEET ? METRES_PER_FOOT : 1.0);
+            height = feature.GetFieldAsDouble(fields.height) * metresPerPlain;
         else
-            height = lengthInWords(words, _options.unit);
+            height = Lengths::read(words, metresPerPlain);
         if (height && std::isfinite(*height) && *height >= LEAST_HEIGHT && *height <= TALLEST) return height;
         building.notes |= Building::BAD_HEIGHT;
         return {};
@@ -369,30 +369,6 @@ private:
 };
 
 } // namespace
-
-std::optional<double> lengthInWords(const std::string& text, HeightUnit unit)
-{
-    std::string rest;
-    const std::optional<double> found = numberAtStart(text, rest);
-    if (!found) return {};
-    const double value = *found;
-    rest = lower(rest);
-    rest.erase(std::remove_if(rest.begin(), rest.end(), [](unsigned char c) { return std::isspace(c); }),
-               rest.end());
-    const bool feet = unit == HeightUnit::FEET;
-    if (rest.empty()) return value * (feet ? METRES_PER_FOOT : 1.0);
-    if (rest == "m" || rest == "metres" || rest == "meters" || rest == "meter" || rest == "metre")
-        return value;
-    if (rest == "ft" || rest == "feet" || rest == "foot") return value * METRES_PER_FOOT;
-    if (rest.front() == '\'')
-    {
-        // 12'6": feet and inches.
-        std::string last;
-        const double inches = numberAtStart(rest.substr(1), last).value_or(0.0);
-        return (value + inches / 12.0) * METRES_PER_FOOT;
-    }
-    return {};
-}
 
 void readBuildings(const TownOptions& options, const TownGrid& grid, const std::string& wkt,
                    TownSummary& summary, const TownProgress& progress,

@@ -19,7 +19,4 @@ void readBuildings(const TownOptions& options, const TownGrid& grid, const std::
                    TownSummary& summary, const TownProgress& progress,
                    const std::function<void(Building&&)>& take);
 
-/// A length in words, metres: "12", "12.5 m", "40 ft", "40'"; a number without a unit is in `unit`. Nothing if it is none.
-std::optional<double> lengthInWords(const std::string& text, HeightUnit unit);
-
 } // namespace osgGeoFX
