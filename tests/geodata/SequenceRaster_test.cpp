@@ -3,6 +3,8 @@
 //
 // Rasters in time: where their values lie, when, and what is refused. GDAL writes the data sets; where things must lie, PROJ says.
 #include <osgGeoFX/geodata/SequenceRaster.h>
+#include <osgGeoFX/mapping/LayerClock.h>
+#include <tools/NotifyWatch.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
 
@@ -46,8 +48,10 @@ struct Look
     const char* calendar = nullptr;
     bool degrees = true; ///< whether longitudes and latitudes say so
     bool southUp = false;
-    double east = 0.0; ///< added to longitudes
-    int levels = 0;    ///< of another dimension
+    double east = 0.0;       ///< added to longitudes
+    int levels = 0;          ///< of another dimension
+    bool kilometres = false; ///< axes of UTM in km, 2 km a cell
+    bool bounds = false;     ///< attributes bound the valid values
 };
 
 std::string write(const std::filesystem::path& file, const Look& look = {})
@@ -83,18 +87,42 @@ std::string write(const std::filesystem::path& file, const Look& look = {})
         longitudes.push_back(west + look.east + 0.1 * (i + 0.5));
     for (int i = 0; i < rows; ++i)
         latitudes.push_back(look.southUp ? south + 0.1 * (i + 0.5) : south + 0.1 * (rows - i - 0.5));
+    if (look.kilometres)
+    {
+        for (int i = 0; i < columns; ++i)
+            longitudes[static_cast<std::size_t>(i)] = 500.0 + 2.0 * i;
+        for (int i = 0; i < rows; ++i)
+            latitudes[static_cast<std::size_t>(i)] = 2400.0 - 2.0 * i;
+    }
     std::vector<std::shared_ptr<GDALDimension>> dimensions = {
         dimension("time", GDAL_DIM_TYPE_TEMPORAL, {0.0, 3.0, 6.0, 12.0}, look.unit)};
     if (look.levels > 0)
         dimensions.push_back(
             root->CreateDimension("level", "", "", static_cast<GUInt64>(look.levels), nullptr));
-    dimensions.push_back(
-        dimension("lat", GDAL_DIM_TYPE_HORIZONTAL_Y, latitudes, look.degrees ? "degrees_north" : "m"));
-    dimensions.push_back(
-        dimension("lon", GDAL_DIM_TYPE_HORIZONTAL_X, longitudes, look.degrees ? "degrees_east" : "m"));
+    dimensions.push_back(dimension("lat", GDAL_DIM_TYPE_HORIZONTAL_Y, latitudes,
+                                   look.kilometres ? "km"
+                                   : look.degrees  ? "degrees_north"
+                                                   : "m"));
+    dimensions.push_back(dimension("lon", GDAL_DIM_TYPE_HORIZONTAL_X, longitudes,
+                                   look.kilometres ? "km"
+                                   : look.degrees  ? "degrees_east"
+                                                   : "m"));
     const auto floats = GDALExtendedDataType::Create(GDT_Float32);
     const std::shared_ptr<GDALMDArray> rain = root->CreateMDArray("rain", dimensions, floats, nullptr);
     rain->SetUnit("mm");
+    if (look.kilometres)
+    {
+        OGRSpatialReference utm;
+        utm.importFromEPSG(32604);
+        rain->SetSpatialRef(&utm);
+    }
+    if (look.bounds)
+    {
+        const GUInt64 two = 2;
+        const double range[] = {100.0, 250.0};
+        const auto pair = rain->CreateAttribute("valid_range", {two}, numbers, nullptr);
+        pair->Write(range, 2);
+    }
     std::vector<float> values;
     for (int step = 0; step < 4; ++step)
         for (int level = 0; level < std::max(1, look.levels); ++level)
@@ -310,6 +338,160 @@ TEST_F(SequenceRasters, TheTimeOfGrib)
     // A message that ends in its middle.
     std::filesystem::resize_file(file, std::filesystem::file_size(file) / 8);
     EXPECT_TRUE(contains(faultOf(file), "gdalinfo") || contains(faultOf(file), "copy or export"));
+}
+
+namespace
+{
+
+/// A small raster of one value.
+TestRaster flat(double value)
+{
+    TestRaster one(4, 4);
+    one.placed(west, south, 0.1, 0.1).crs("EPSG:4326");
+    one.fill([=](int, int, int) { return value; });
+    return one;
+}
+
+double meanOf(const SequenceRaster& raster, std::size_t step)
+{
+    std::string error;
+    const osg::ref_ptr<osg::Image> image = raster.steps->read(step, error);
+    EXPECT_TRUE(image) << error;
+    return image ? static_cast<double>(
+                       *reinterpret_cast<const float*>(image->data(image->s() / 2, image->t() / 2)))
+                 : -1.0;
+}
+
+} // namespace
+
+TEST_F(SequenceRasters, FilesBesideRastersAreNoSteps)
+{
+    std::filesystem::create_directory(path("steps"));
+    flat(1.0).write(path("steps") / "a.tif");
+    flat(2.0).write(path("steps") / "b.tif");
+    for (const char* const each : {"a.pgw", "a.jgw", "a.tif.aux.xml", "a.qml", "b.tifw", "b.sld", "c.hdr"})
+        std::ofstream(path("steps") / each) << "1\n";
+    flat(3.0).write(path("steps") / "c.flt");
+    MappingFrame frame;
+    std::string error;
+    const std::optional<SequenceRaster> raster = opened(path("steps").string(), frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_EQ(raster->steps->times().size(), 3u);
+}
+
+TEST_F(SequenceRasters, NumbersInNamesCountByTheirValueAndDatesByTheirTime)
+{
+    std::filesystem::create_directory(path("numbers"));
+    for (const int step : {1, 2, 10})
+        flat(step).write(path("numbers") / CPLSPrintf("step_%d.tif", step));
+    MappingFrame frame;
+    std::string error;
+    std::optional<SequenceRaster> raster = opened(path("numbers").string(), frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_EQ(meanOf(*raster, 1), 2.0);
+    EXPECT_EQ(meanOf(*raster, 2), 10.0);
+    // The names stand in another order than the dates.
+    std::filesystem::create_directory(path("dates"));
+    flat(1.0).write(path("dates") / "b_202601.tif");
+    flat(2.0).write(path("dates") / "a_202602.tif");
+    raster = opened(path("dates").string(), frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_TRUE(raster->steps->dated());
+    EXPECT_EQ(raster->steps->times()[1] - raster->steps->times()[0], 31 * 86400.0);
+    EXPECT_EQ(meanOf(*raster, 0), 1.0);
+    // Two steps of one date, and a step without a date, leave a word.
+    NotifyWatch watch;
+    flat(3.0).write(path("dates") / "c_202601.tif");
+    auto messages = watch.messagesOf([&] { raster = opened(path("dates").string(), frame, error); });
+    ASSERT_TRUE(raster) << error;
+    EXPECT_FALSE(raster->steps->dated());
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_TRUE(contains(messages[0], "do not rise")) << messages[0];
+    flat(3.0).write(path("numbers") / "step_20260112.tif");
+    messages = watch.messagesOf([&] { raster = opened(path("numbers").string(), frame, error); });
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_TRUE(contains(messages[0], "1 of its 4 steps have a date")) << messages[0];
+}
+
+TEST_F(SequenceRasters, MonthsGoByTheCalendar)
+{
+    Look look;
+    look.unit = "months since 2025-12-15";
+    MappingFrame frame;
+    std::string error;
+    std::optional<SequenceRaster> raster = opened(write(path("months.nc"), look), frame, error);
+    ASSERT_TRUE(raster) << error;
+    const double first = *LayerClock::parseDate("2025-12-15");
+    EXPECT_TRUE(raster->steps->dated());
+    EXPECT_EQ(raster->steps->times(), (std::vector<double>{first, *LayerClock::parseDate("2026-03-15"),
+                                                           *LayerClock::parseDate("2026-06-15"),
+                                                           *LayerClock::parseDate("2026-12-15")}));
+    look.unit = "fortnights since 2025-12-15";
+    NotifyWatch watch;
+    const auto messages =
+        watch.messagesOf([&] { raster = opened(write(path("odd.nc"), look), frame, error); });
+    ASSERT_TRUE(raster) << error;
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_TRUE(contains(messages[0], "\"fortnights since 2025-12-15\", is not known")) << messages[0];
+}
+
+TEST_F(SequenceRasters, LevelsAreChosenByTheirValueOrNamed)
+{
+    Look look;
+    look.levels = 3;
+    const std::string file = write(path("levels.nc"), look);
+    MappingFrame frame;
+    std::string error;
+    NotifyWatch watch;
+    std::optional<SequenceRaster> raster;
+    const auto messages = watch.messagesOf([&] { raster = opened(file, frame, error); });
+    ASSERT_TRUE(raster) << error;
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_TRUE(contains(messages[0], "the first value of level, 0, is shown of 3; name another one as " +
+                                          file + ":rain[level=0]."))
+        << messages[0];
+    raster = opened(file, frame, error, "rain[level=2]");
+    ASSERT_TRUE(raster) << error;
+    EXPECT_NEAR(valueOf(*raster, 1, frame, -157.0, 21.0), valueAt(-157.0, 21.0, 1) + 2000.0, 0.02);
+    EXPECT_TRUE(
+        contains(faultOf(file, "rain[level=7]"), "its dimension level has no value 7; it has 0, 1, 2."));
+    EXPECT_TRUE(contains(faultOf(file, "rain[member=1]"), "name a value of level."));
+    EXPECT_TRUE(contains(faultOf(file, "snow[level=1]"), "no variable \"snow\""));
+}
+
+TEST_F(SequenceRasters, AxesInKilometres)
+{
+    const std::string file = write(path("km.nc"),
+                                   []
+                                   {
+                                       Look look;
+                                       look.kilometres = true;
+                                       return look;
+                                   }());
+    MappingFrame frame;
+    frame.globe = false;
+    frame.wkt = "EPSG:32604";
+    std::string error;
+    const std::optional<SequenceRaster> raster = opened(file, frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_NEAR(raster->high.x() - raster->low.x(), columns * 2000.0, 1.0);
+    EXPECT_NEAR(raster->high.y() - raster->low.y(), rows * 2000.0, 1.0);
+}
+
+TEST_F(SequenceRasters, ValuesThatAttributesCallInvalidAreNone)
+{
+    Look look;
+    look.bounds = true; // only values from 100 to 250 are valid
+    MappingFrame frame;
+    std::string error;
+    const std::optional<SequenceRaster> raster = opened(write(path("bounds.nc"), look), frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_GE(raster->lowest, 100.0);
+    EXPECT_LE(raster->highest, 250.0);
+    EXPECT_NEAR(valueOf(*raster, 1, frame, -157.0, 21.0), valueAt(-157.0, 21.0, 1), 0.02);
+    const osg::ref_ptr<osg::Image> none = raster->steps->read(3, error);
+    ASSERT_TRUE(none) << error;
+    EXPECT_TRUE(std::isnan(*reinterpret_cast<const float*>(none->data(none->s() / 2, none->t() / 2))));
 }
 
 TEST_F(SequenceRasters, WhatIsWrongIsSaid)

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/geodata/detail/Lengths.h>
+#include <osgGeoFX/geodata/detail/Remarks.h>
 
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
-#include <osg/Notify>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <iterator>
-#include <mutex>
-#include <set>
 
 namespace osgGeoFX
 {
@@ -170,14 +168,9 @@ double Lengths::metresPerHeight(GDALRasterBand& band, const OGRSpatialReference&
     const std::string unit = given ? given : "";
     if (unit.empty()) return srs.IsCompound() ? srs.GetTargetLinearUnits("COMPD_CS|VERT_CS") : 1.0;
     if (const auto metres = metresPerUnit(unit)) return *metres;
-    static std::mutex mutex;
-    static std::set<std::string> warned;
-    const std::lock_guard<std::mutex> lock(mutex);
-    if (warned.insert(file).second)
-        OSG_WARN << "osgGeoFX: " << file << ": the unit of its heights, \"" << unit.substr(0, 40)
-                 << "\", is not known. They are taken as metres; if they are not, set the unit with "
-                    "gdal_edit.py -units."
-                 << std::endl;
+    remarkOnce(file + ": the unit of its heights, \"" + unit.substr(0, 40) +
+               "\", is not known. They are taken as metres; if they are not, set the unit with gdal_edit.py "
+               "-units.");
     return 1.0;
 }
 

@@ -3,16 +3,19 @@
 #include <osgGeoFX/geodata/detail/TimeSteps.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
-#include <osgGeoFX/mapping/LayerClock.h>
+#include <osgGeoFX/geodata/detail/Lengths.h>
+#include <osgGeoFX/geodata/detail/Remarks.h>
+#include <osgGeoFX/geodata/detail/StepDates.h>
 
 #include <cpl_string.h>
 #include <gdal_utils.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 namespace osgGeoFX
@@ -72,15 +75,23 @@ void checkTimes(TimeSteps& steps, const std::string& file)
     for (std::size_t i = 1; i < steps.times.size(); ++i)
         rising = rising && steps.times[i] > steps.times[i - 1] && steps.times[i] <= most;
     if (rising) return;
+    remarkOnce(file + ": the times of its steps do not rise, or lie beyond all clocks, so its steps count 0, "
+                      "1, 2 …; give each "
+                      "a time of its own, in order.");
     steps.dated = false;
     for (std::size_t i = 0; i < steps.times.size(); ++i)
         steps.times[i] = static_cast<double>(i);
 }
 
 /// Takes times if all steps have one, else counts.
-void setTimes(TimeSteps& steps, const std::vector<std::optional<double>>& times)
+void setTimes(TimeSteps& steps, const std::vector<std::optional<double>>& times, const std::string& file)
 {
-    steps.dated = std::all_of(times.begin(), times.end(), [](const auto& time) { return time.has_value(); });
+    const auto dated =
+        std::count_if(times.begin(), times.end(), [](const auto& time) { return time.has_value(); });
+    steps.dated = static_cast<std::size_t>(dated) == times.size();
+    if (dated > 0 && !steps.dated)
+        remarkOnce(file + ": " + std::to_string(dated) + " of its " + std::to_string(times.size()) +
+                   " steps have a date, so all count 0, 1, 2 …; give each a date, or none.");
     for (std::size_t i = 0; i < times.size(); ++i)
         steps.times.push_back(steps.dated ? *times[i] : static_cast<double>(i));
 }
@@ -94,18 +105,20 @@ public:
     {
         const std::shared_ptr<GDALGroup> root = _dataset->GetRootGroup();
         if (!root) throw BuildError(_file + ": it holds no variables; check it with gdalmdiminfo.");
-        _array = find(*root, wanted);
+        const std::string name = wanted.substr(0, wanted.find('['));
+        _array = find(*root, name);
         if (!_array)
         {
             const std::string names = listed(*root);
             throw BuildError(_file + ": " +
-                             (wanted.empty()
+                             (name.empty()
                                   ? std::string("no variable of it has a time, rows and columns")
-                                  : "it has no variable \"" + wanted + "\" with a time, rows and columns") +
+                                  : "it has no variable \"" + name + "\" with a time, rows and columns") +
                              (names.empty() ? "; check it with gdalmdiminfo." : "; it has " + names + "."));
         }
         variable = _array->GetName();
         unit = _array->GetUnit();
+        chooseOthers(wanted.substr(std::min(name.size(), wanted.size())));
         readTimes();
         checkTimes(*this, _file);
     }
@@ -123,12 +136,13 @@ public:
             else if (i == _axes.x || i == _axes.y)
                 view += ":";
             else
-                view += "0"; // the first level, or member
+                view += std::to_string(_others[i]);
         }
         const std::shared_ptr<GDALMDArray> slice = _array->GetView(view + "]");
         const std::size_t x = _axes.x > _axes.y ? 1 : 0;
         DatasetChain chain;
         if (slice) chain.add(DatasetPtr(slice->AsClassicDataset(x, 1 - x)));
+        if (!chain.empty() && hasBounds()) chain.add(withoutInvalid(*slice, chain.top()));
         if (chain.empty())
             throw BuildError(_file + ": step " + std::to_string(index) + " of its variable " + variable +
                              " cannot be used (" + errors.message() + "); check it with gdalmdiminfo.");
@@ -139,10 +153,171 @@ public:
         // The CF conventions' usual latitude and longitude.
         if ((!srs || srs->IsEmpty()) && degrees.compare(0, 6, "degree") == 0)
             addVirtual(chain, {"-a_srs", "EPSG:4326"}, _file);
+        bringToUnit(chain, dimensions);
         return std::make_unique<FrameRaster>(_file, std::move(chain), DataLayer::VALUE);
     }
 
 private:
+    /// Axes may be in another unit than the coordinate system, such as kilometres.
+    void bringToUnit(DatasetChain& chain, const std::vector<std::shared_ptr<GDALDimension>>& dimensions) const
+    {
+        const OGRSpatialReference* const srs = chain.top().GetSpatialRef();
+        double place[6];
+        if (!srs || !srs->IsProjected() || chain.top().GetGeoTransform(place) != CE_None) return;
+        const auto factor = [&](std::size_t axis)
+        {
+            const auto numbers = dimensions[axis]->GetIndexingVariable();
+            const auto metres = Lengths::metresPerUnit(numbers ? numbers->GetUnit() : std::string());
+            return metres ? *metres / srs->GetLinearUnits() : 1.0;
+        };
+        const double wide = factor(_axes.x), high = factor(_axes.y);
+        if (std::abs(wide - 1.0) < 1e-6 && std::abs(high - 1.0) < 1e-6) return;
+        const auto number = [](double value)
+        {
+            return std::string(CPLSPrintf("%.17g", value));
+        };
+        const double right = place[0] + place[1] * chain.top().GetRasterXSize();
+        const double bottom = place[3] + place[5] * chain.top().GetRasterYSize();
+        addVirtual(chain,
+                   {"-a_ullr", number(place[0] * wide), number(place[3] * high), number(right * wide),
+                    number(bottom * high)},
+                   _file);
+    }
+
+    /// Whether attributes say which values are valid, beside the one value that GDAL's bands can have for none.
+    bool hasBounds() const
+    {
+        for (const char* const name : {"valid_min", "valid_max", "valid_range"})
+            if (_array->GetAttribute(name)) return true;
+        return _array->GetAttribute("missing_value") && _array->GetAttribute("_FillValue");
+    }
+
+    /// The values of a step in memory, with NaN where attributes say that they are none.
+    DatasetPtr withoutInvalid(const GDALMDArray& slice, GDALDataset& plain) const
+    {
+        const GdalErrorScope errors;
+        const int columns = plain.GetRasterXSize(), rows = plain.GetRasterYSize();
+        GDALRasterBand& from = *plain.GetRasterBand(1);
+        DatasetPtr result(GetGDALDriverManager()->GetDriverByName("MEM")->Create("", columns, rows, 1,
+                                                                                 GDT_Float64, nullptr));
+        const std::shared_ptr<GDALMDArray> mask = slice.GetMask(nullptr);
+        const std::size_t x = _axes.x > _axes.y ? 1 : 0;
+        const DatasetPtr valid(mask ? mask->AsClassicDataset(x, 1 - x) : nullptr);
+        std::vector<double> values(static_cast<std::size_t>(columns));
+        std::vector<unsigned char> kept(values.size());
+        bool good = result && valid;
+        for (int row = 0; good && row < rows; ++row)
+        {
+            good = from.RasterIO(GF_Read, 0, row, columns, 1, values.data(), columns, 1, GDT_Float64, 0, 0) ==
+                       CE_None &&
+                   valid->GetRasterBand(1)->RasterIO(GF_Read, 0, row, columns, 1, kept.data(), columns, 1,
+                                                     GDT_Byte, 0, 0) == CE_None;
+            for (std::size_t i = 0; i < values.size(); ++i)
+                if (kept[i] == 0) values[i] = std::numeric_limits<double>::quiet_NaN();
+            good = good && result->GetRasterBand(1)->RasterIO(GF_Write, 0, row, columns, 1, values.data(),
+                                                              columns, 1, GDT_Float64, 0, 0) == CE_None;
+        }
+        if (!good)
+            throw BuildError(_file + ": the values of its variable " + variable + " cannot be read (" +
+                             errors.message() + "); check it with gdalmdiminfo.");
+        double place[6];
+        if (plain.GetGeoTransform(place) == CE_None) result->SetGeoTransform(place);
+        result->SetSpatialRef(plain.GetSpatialRef());
+        GDALRasterBand& to = *result->GetRasterBand(1);
+        to.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
+        to.SetScale(from.GetScale());
+        to.SetOffset(from.GetOffset());
+        to.SetUnitType(from.GetUnitType());
+        return result;
+    }
+
+    /// Which value of each further dimension is shown. `choice`: empty, or "[name=value,name=value]".
+    void chooseOthers(const std::string& choice)
+    {
+        const auto& dimensions = _array->GetDimensions();
+        _others.assign(dimensions.size(), 0);
+        std::vector<bool> chosen(dimensions.size());
+        const CPLStringList parts(
+            CSLTokenizeString2(choice.c_str(), "[],", CSLT_STRIPLEADSPACES | CSLT_STRIPENDSPACES));
+        for (int k = 0; k < parts.size(); ++k)
+        {
+            const std::string part = parts[k];
+            const std::size_t sign = part.find('=');
+            const std::string name = part.substr(0, sign);
+            const auto found = std::find_if(dimensions.begin(), dimensions.end(),
+                                            [&](const auto& each) { return each->GetName() == name; });
+            const auto i = static_cast<std::size_t>(found - dimensions.begin());
+            if (sign == std::string::npos || i == dimensions.size() || i == _axes.time || i == _axes.x ||
+                i == _axes.y)
+                throw BuildError(_file + ": \"" + part + "\" chooses nothing of its variable " + variable +
+                                 "; " +
+                                 (others().empty() ? "it has a time, rows and columns alone."
+                                                   : "name a value of " + others() + "."));
+            choose(i, part.substr(sign + 1));
+            chosen[i] = true;
+        }
+        for (std::size_t i = 0; i < dimensions.size(); ++i)
+            if (i != _axes.time && i != _axes.x && i != _axes.y && !chosen[i] && dimensions[i]->GetSize() > 1)
+                remarkOnce(_file + ": of its variable " + variable + ", the first value of " +
+                           dimensions[i]->GetName() + ", " + valuesOf(i, 1) + ", is shown of " +
+                           std::to_string(dimensions[i]->GetSize()) + "; name another one as " + _file + ":" +
+                           variable + "[" + dimensions[i]->GetName() + "=" + valuesOf(i, 1) + "].");
+    }
+
+    /// The names of the dimensions that can be chosen of.
+    std::string others() const
+    {
+        std::string names;
+        const auto& dimensions = _array->GetDimensions();
+        for (std::size_t i = 0; i < dimensions.size(); ++i)
+            if (i != _axes.time && i != _axes.x && i != _axes.y)
+                names += (names.empty() ? "" : ", ") + dimensions[i]->GetName();
+        return names;
+    }
+
+    /// A dimension's values, or 0, 1, 2 … if it has none.
+    std::vector<double> numbersOf(std::size_t dimension) const
+    {
+        const auto& axis = _array->GetDimensions()[dimension];
+        std::vector<double> values(static_cast<std::size_t>(std::min<GUInt64>(axis->GetSize(), mostSteps)));
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i] = static_cast<double>(i);
+        const auto numbers = axis->GetIndexingVariable();
+        const GUInt64 start = 0;
+        const size_t size = values.size();
+        const GdalErrorScope errors;
+        if (numbers && numbers->GetDimensionCount() == 1 &&
+            numbers->GetDataType().GetClass() == GEDTC_NUMERIC)
+            numbers->Read(&start, &size, nullptr, nullptr, GDALExtendedDataType::Create(GDT_Float64),
+                          values.data());
+        return values;
+    }
+
+    std::string valuesOf(std::size_t dimension, std::size_t most) const
+    {
+        const std::vector<double> values = numbersOf(dimension);
+        std::string text;
+        for (std::size_t i = 0; i < std::min(most, values.size()); ++i)
+            text += (i > 0 ? ", " : "") + std::string(CPLSPrintf("%.9g", values[i]));
+        return text + (most > 1 && values.size() > most ? " …" : "");
+    }
+
+    void choose(std::size_t dimension, const std::string& wanted)
+    {
+        const std::vector<double> values = numbersOf(dimension);
+        char* end = nullptr;
+        const double number = CPLStrtod(wanted.c_str(), &end);
+        const bool isNumber = end != wanted.c_str() && *end == 0;
+        for (std::size_t i = 0; isNumber && i < values.size(); ++i)
+            if (std::abs(values[i] - number) <= 1e-6 * std::max(1.0, std::abs(number)))
+            {
+                _others[dimension] = i;
+                return;
+            }
+        throw BuildError(_file + ": its dimension " + _array->GetDimensions()[dimension]->GetName() +
+                         " has no value " + wanted + "; it has " + valuesOf(dimension, 12) + ".");
+    }
+
     struct Axes
     {
         std::size_t time = 0, x = 0, y = 0;
@@ -232,18 +407,28 @@ private:
         const std::optional<TimeUnit> unitOfTime = TimeUnit::parse(numbers->GetUnit());
         const bool usual = calendar.empty() || calendar == "standard" || calendar == "gregorian" ||
                            calendar == "proleptic_gregorian";
-        if (!unitOfTime) return;
+        if (!unitOfTime)
+        {
+            if (numbers->GetUnit().find(" since ") != std::string::npos)
+                remarkOnce(_file + ": the unit of its times, \"" + numbers->GetUnit().substr(0, 60) +
+                           "\", is not known, so they count as they are; write seconds, minutes, hours, "
+                           "days, months or years "
+                           "since a date.");
+            return;
+        }
         // Years of other calendars have other days: their times count from the first one.
         dated = usual;
-        const double first = usual ? 0.0 : times.front();
+        const double first = times.front();
         for (double& time : times)
-            time = (time - first) * unitOfTime->seconds + (usual ? unitOfTime->start : 0.0);
+            time = usual ? unitOfTime->timeOf(time) : (time - first) * unitOfTime->seconds;
     }
 
     std::string _file;
     DatasetPtr _dataset;
     std::shared_ptr<GDALMDArray> _array;
     Axes _axes;
+    std::vector<std::size_t>
+        _others; ///< for each dimension the value that is shown; of time, rows and columns 0
 };
 
 /// The bands of a raster.
@@ -260,7 +445,7 @@ public:
             throw BuildError(_file +
                              ": it has one band and no time, so it does not change; show it with --mapping, "
                              "or name a folder of rasters.");
-        setTimes(*this, dates);
+        setTimes(*this, dates, _file);
         checkTimes(*this, _file);
     }
 
@@ -293,20 +478,28 @@ public:
         std::error_code fault;
         for (const auto& each : fs::directory_iterator(folder, fault))
         {
-            const std::string ending = lower(each.path().extension().string());
-            const bool beside = ending == ".xml" || ending == ".ovr" || ending == ".msk" ||
-                                ending == ".prj" || ending == ".tfw" || ending == ".txt" ||
-                                ending == ".json" || ending == ".idx";
-            if (each.is_regular_file(fault) && !beside && each.path().filename().string()[0] != '.')
+            if (each.is_regular_file(fault) && !isBeside(each.path()) &&
+                each.path().filename().string()[0] != '.')
                 _files.push_back(each.path().string());
         }
         if (_files.empty())
             throw BuildError(folder + ": the folder has no rasters; put the steps into it, a file for each.");
-        std::sort(_files.begin(), _files.end());
-        std::vector<std::optional<double>> dates;
+        std::vector<std::pair<std::optional<double>, std::string>> named;
         for (const std::string& file : _files)
-            dates.push_back(dateIn(fs::path(file).stem().string()));
-        setTimes(*this, dates);
+            named.emplace_back(dateIn(fs::path(file).stem().string()), file);
+        const bool all =
+            std::all_of(named.begin(), named.end(), [](const auto& each) { return each.first.has_value(); });
+        std::sort(named.begin(), named.end(),
+                  [&](const auto& a, const auto& b) {
+                      return all && a.first != b.first ? a.first < b.first : standsBefore(a.second, b.second);
+                  });
+        std::vector<std::optional<double>> dates;
+        for (std::size_t i = 0; i < named.size(); ++i)
+        {
+            dates.push_back(named[i].first);
+            _files[i] = named[i].second;
+        }
+        setTimes(*this, dates, folder);
         checkTimes(*this, folder);
     }
 
@@ -316,83 +509,33 @@ public:
     }
 
 private:
+    /// Whether a file belongs to a raster beside it, or is none by its name.
+    static bool isBeside(const fs::path& file)
+    {
+        const std::string ending = lower(file.extension().string());
+        for (const char* const each :
+             {".xml", ".ovr", ".msk", ".prj",  ".txt", ".json", ".idx", ".qml", ".qmd",
+              ".sld", ".wld", ".clr", ".stx",  ".rrd", ".md5",  ".lgo", ".cpt", ".qgs",
+              ".qgz", ".pdf", ".md",  ".html", ".py",  ".sh",   ".log"})
+            if (ending == each) return true;
+        // World files: .tfw, .pgw, .jgw, .tifw …
+        if (ending.size() >= 4 && ending.size() <= 6 && ending.back() == 'w' && ending != ".raw") return true;
+        // The header of a raster of plain numbers.
+        if (ending != ".hdr") return false;
+        for (const char* const each : {".bil", ".bip", ".bsq", ".flt", ".img", ".dat", ".raw", ""})
+        {
+            std::error_code fault;
+            if (fs::is_regular_file(fs::path(file).replace_extension(each), fault)) return true;
+        }
+        return false;
+    }
+
     std::vector<std::string> _files;
 };
 
 } // namespace
 
 TimeSteps::~TimeSteps() = default;
-
-std::optional<TimeUnit> TimeUnit::parse(const std::string& text)
-{
-    const std::string all = lower(text);
-    TimeUnit unit;
-    if (all == "sec utc") return unit;
-    const std::size_t since = all.find(" since ");
-    const std::string word = all.substr(0, since);
-    const std::pair<const char*, double> units[] = {{"ns", 1e-9},
-                                                    {"nanosecond", 1e-9},
-                                                    {"nanoseconds", 1e-9},
-                                                    {"us", 1e-6},
-                                                    {"microsecond", 1e-6},
-                                                    {"microseconds", 1e-6},
-                                                    {"ms", 1e-3},
-                                                    {"msec", 1e-3},
-                                                    {"millisecond", 1e-3},
-                                                    {"milliseconds", 1e-3},
-                                                    {"s", 1.0},
-                                                    {"sec", 1.0},
-                                                    {"second", 1.0},
-                                                    {"seconds", 1.0},
-                                                    {"min", 60.0},
-                                                    {"minute", 60.0},
-                                                    {"minutes", 60.0},
-                                                    {"h", 3600.0},
-                                                    {"hr", 3600.0},
-                                                    {"hour", 3600.0},
-                                                    {"hours", 3600.0},
-                                                    {"d", 86400.0},
-                                                    {"day", 86400.0},
-                                                    {"days", 86400.0}};
-    const auto* const known = std::find_if(std::begin(units), std::end(units),
-                                           [&](const auto& each) { return word == each.first; });
-    if (known == std::end(units) || since == std::string::npos) return std::nullopt;
-    unit.seconds = known->second;
-    const std::optional<double> start = LayerClock::parseDate(text.substr(since + 7));
-    if (!start) return std::nullopt;
-    unit.start = *start;
-    return unit;
-}
-
-std::optional<double> dateIn(const std::string& text)
-{
-    // Digits alone, whatever stands between them: year, month, day, and perhaps hour, minute and second.
-    for (std::size_t at = 0; at < text.size(); ++at)
-    {
-        if (!std::isdigit(static_cast<unsigned char>(text[at]))) continue;
-        if (at > 0 && std::isdigit(static_cast<unsigned char>(text[at - 1]))) continue;
-        std::string digits;
-        std::size_t next = at;
-        while (next < text.size() && digits.size() < 14)
-        {
-            const auto c = static_cast<unsigned char>(text[next]);
-            const bool gap = c == '-' || c == ':' || c == '_' || c == ' ' || c == 'T' || c == 't';
-            if (!std::isdigit(c) && !(gap && digits.size() >= 4 && digits.size() % 2 == 0)) break;
-            if (std::isdigit(c)) digits += static_cast<char>(c);
-            ++next;
-        }
-        if (digits.size() < 8) continue;
-        const auto number = [&](std::size_t from, std::size_t count)
-        {
-            return from + count <= digits.size() ? std::atoi(digits.substr(from, count).c_str()) : 0;
-        };
-        const std::string date = digits.substr(0, 4) + "-" + digits.substr(4, 2) + "-" + digits.substr(6, 2);
-        const std::optional<double> day = LayerClock::parseDate(date);
-        if (!day || number(8, 2) > 23 || number(10, 2) > 59 || number(12, 2) > 59) continue;
-        return *day + number(8, 2) * 3600.0 + number(10, 2) * 60.0 + number(12, 2);
-    }
-    return std::nullopt;
-}
 
 std::unique_ptr<TimeSteps> TimeSteps::open(const std::string& file, const std::string& variable)
 {

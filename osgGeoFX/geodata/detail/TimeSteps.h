@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +20,8 @@ class TimeSteps
 public:
     virtual ~TimeSteps();
     /// Those of a file, or of a folder of files. `variable`: of a data set of several dimensions; empty for the first that fits.
+    /// Behind its name, brackets may choose among levels, members and other dimensions, by their values: "t[level=500,number=2]".
+    /// Of a dimension that is not named the first value counts, which a warning states.
     static std::unique_ptr<TimeSteps> open(const std::string& file, const std::string& variable);
 
     virtual std::unique_ptr<FrameRaster> step(std::size_t index) = 0;
@@ -30,17 +31,5 @@ public:
     std::string variable;
     std::string unit;
 };
-
-/// The factor to seconds and the second of 1970 of a text such as "hours since 2026-01-12 06:00:00"; nothing for other texts.
-struct TimeUnit
-{
-    double seconds = 1.0;
-    double start = 0.0;
-
-    static std::optional<TimeUnit> parse(const std::string& text);
-};
-
-/// The date in a file's name or in a band's description, seconds since 1970; nothing if there is none.
-std::optional<double> dateIn(const std::string& text);
 
 } // namespace osgGeoFX
