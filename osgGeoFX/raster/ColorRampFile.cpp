@@ -150,7 +150,10 @@ public:
         if (_isCpt) joinSlices();
         if (_stops.empty())
             throw Refusal{"there are no colors; write a line for each value, such as 100 0 128 0."};
-        const auto below = [](const Stop& a, const Stop& b) { return a.value < b.value; };
+        const auto below = [](const Stop& a, const Stop& b)
+        {
+            return a.value < b.value;
+        };
         // In a list that descends, the first of two lines with one value is the upper side of the jump.
         if (std::is_sorted(_stops.rbegin(), _stops.rend(), below)) std::reverse(_stops.begin(), _stops.end());
         std::stable_sort(_stops.begin(), _stops.end(), below);

@@ -98,9 +98,9 @@ double TimeUnit::timeOf(double count) const
 std::optional<double> dateIn(const std::string& text)
 {
     // Year, month and day with one mark between them, then perhaps a time of day; no further digit follows.
-    static const std::regex date(
-        "([0-9]{4})([-_.:]?)([0-9]{2})\\2([0-9]{2})"
-        "(?:[Tt _-]?([0-9]{2})[:_-]?([0-9]{2})(?:[:_-]?([0-9]{2}))?(?![0-9])|[Tt _-]?([0-9]{2})(?![0-9])|(?![0-9]))");
+    static const std::regex date("([0-9]{4})([-_.:]?)([0-9]{2})\\2([0-9]{2})"
+                                 "(?:[Tt _-]?([0-9]{2})[:_-]?([0-9]{2})(?:[:_-]?([0-9]{2}))?(?![0-9])|[Tt "
+                                 "_-]?([0-9]{2})(?![0-9])|(?![0-9]))");
     static const std::regex month("([0-9]{4})[-_.]?([0-9]{2})(?![0-9])");
     const auto search = [&](const std::regex& pattern, const auto& take) -> std::optional<double>
     {
