@@ -30,7 +30,8 @@ void addOptions(CLI::App& app, Options& options)
     app.add_option("--sequence", options.sequences,
                    "Rasters in time to put onto the ground: the time of NetCDF, GRIB or Zarr, the bands of a "
                    "raster, or a "
-                   "folder of rasters; FILE, FILE:VARIABLE or FOLDER. As often as wanted")
+                   "folder of rasters; FILE, FILE:VARIABLE, FILE:VARIABLE[DIMENSION=VALUE] or FOLDER. As "
+                   "often as wanted")
         ->expected(1)
         ->allow_extra_args(false)
         ->type_name("FILE")

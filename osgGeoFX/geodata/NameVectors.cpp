@@ -55,16 +55,14 @@ struct Fields
     }
 };
 
-/// A number at the beginning of a field, and what follows it.
-std::optional<double> numberOf(const OGRFeature& feature, int field, std::string& rest)
+/// A number at the beginning of a field.
+std::optional<double> numberOf(const OGRFeature& feature, int field)
 {
-    rest.clear();
     if (field < 0 || !feature.IsFieldSetAndNotNull(field)) return std::nullopt;
     const std::string text = feature.GetFieldAsString(field);
     char* end = nullptr;
     const double number = CPLStrtod(text.c_str(), &end);
     if (end == text.c_str() || !std::isfinite(number)) return std::nullopt;
-    rest = end;
     return number;
 }
 
@@ -73,9 +71,8 @@ double heightOf(const OGRFeature& feature, int field)
     if (field < 0 || !feature.IsFieldSetAndNotNull(field)) return unknown;
     if (const auto metres = Lengths::read(feature.GetFieldAsString(field)); metres && std::isfinite(*metres))
         return *metres;
-    // Words that are no unit, such as "m (about)".
-    std::string rest;
-    return numberOf(feature, field, rest).value_or(unknown);
+    // Words that are no unit, such as "müM".
+    return numberOf(feature, field).value_or(unknown);
 }
 
 /// The middle of an area along its longer axis, with places where the area is at its widest: the means of slices across the axis.
@@ -234,8 +231,7 @@ void collect(OGRLayer& layer, const NameVectors::Options& options, const OGRSpat
             MapName name;
             name.text = feature.GetFieldAsString(fields.name);
             if (name.text.find_first_not_of(" \t\r\n") == std::string::npos) return;
-            std::string rest;
-            name.importance = numberOf(feature, fields.importance, rest).value_or(unknown);
+            name.importance = numberOf(feature, fields.importance).value_or(unknown);
             if (fields.style >= 0 && feature.IsFieldSetAndNotNull(fields.style))
                 name.style = feature.GetFieldAsString(fields.style);
             Shapes shapes(toTarget, metresPerUnit, globe);

@@ -16,8 +16,8 @@ namespace osgGeoFX
 /** Rasters in time, warped into the frame of mappings: the steps of a LayerSequence.
 
     They are the time dimension of a data set of several dimensions that GDAL opens (NetCDF, GRIB, Zarr, HDF5), the bands of any
-    raster, or the rasters of a folder in the order of their names. Times are those of the dimension, of the bands' metadata or
-    descriptions, or dates in the files' names ("rain_2026-01-12T06.tif", "20260112_0600.tif"); else steps are 0, 1, 2 … Each
+    raster, or the rasters of a folder, by their dates, else by their names. Times are those of the dimension, of the bands' metadata or
+    descriptions, or dates in the files' names ("rain_2026-01-12T06.tif", "20260112_0600.tif", "rain_202601.tif"); else steps are 0, 1, 2 … Each
     step lies where its georeference says; all are warped onto the rectangle of the first one.
 
     open() may be called from any thread; each sequence has its own datasets.
@@ -26,7 +26,8 @@ struct OSGGEOFXDATA_EXPORT SequenceRaster
 {
     struct Options
     {
-        /// Of several dimensions; empty: the first one that has a time, and rows and columns.
+        /// Of several dimensions; empty: the first one that has a time, and rows and columns. Behind its name, brackets choose
+        /// among levels, members and other dimensions, by their values: "t[level=500,number=2]".
         std::string variable;
         int maxSide = 1024; ///< texels along the longer side at most, 1…16384
     };

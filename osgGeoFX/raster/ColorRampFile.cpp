@@ -155,7 +155,9 @@ public:
             return a.value < b.value;
         };
         // In a list that descends, the first of two lines with one value is the upper side of the jump.
-        if (std::is_sorted(_stops.rbegin(), _stops.rend(), below)) std::reverse(_stops.begin(), _stops.end());
+        if (_stops.front().value > _stops.back().value &&
+            std::is_sorted(_stops.rbegin(), _stops.rend(), below))
+            std::reverse(_stops.begin(), _stops.end());
         std::stable_sort(_stops.begin(), _stops.end(), below);
         if (_discrete) makeDiscrete();
         addOutside();

@@ -27,8 +27,8 @@ namespace osgGeoFX
 
     A file is read as .cpt if its name ends so, or if a comment contains COLOR_MODEL, which must be RGB. Its lines
     are `z0 color z1 color`, ascending or descending, with colors as R G B, R/G/B, a name of X11 or #rrggbb. Lines
-    `value color` are classes. Its colors B (below) and F (above) begin 1/512 of the
-    table's range outside the range, so that a row of 1024 texels contains them. N is the no-data color.
+    `value color` are classes. Its colors B (below) and F (above) begin 1/512 of the table's range outside the range, so
+    that a row of 1024 texels contains them. N is the no-data color.
 
     @ingroup raster */
 class OSGGEOFX_EXPORT ColorRampFile
@@ -37,9 +37,9 @@ public:
     /// Lowest and highest value.
     using Range = std::pair<double, double>;
 
-    /// Reads a table. Its mode is EXACT if the file has classes, STEPS if it is DISCRETE, else LINEAR, because the other files do not tell the
-    /// mode. Null, with a sentence in `error` that names file, line and remedy, if the file cannot be read, or if it has
-    /// percentages and `rangeOfData` is empty.
+    /// Reads a table. Its mode is EXACT if the file has classes, STEPS if it is DISCRETE, else LINEAR, because other files do
+    /// not state the mode. Null, with a sentence in `error` that names file, line and remedy, if the file cannot be read, or
+    /// if it has percentages and `rangeOfData` is empty.
     static osg::ref_ptr<ColorTable> read(const std::string& path, const std::optional<Range>& rangeOfData,
                                          std::string& error);
 

@@ -39,6 +39,8 @@ TEST(Lengths, InWords)
     EXPECT_DOUBLE_EQ(metres("1.2 km"), 1200.0);
     EXPECT_DOUBLE_EQ(metres("2014\u2032"), 2014 * 0.3048);
     EXPECT_DOUBLE_EQ(metres("20141 ft"), 20141 * 0.3048);
+    EXPECT_DOUBLE_EQ(metres("2,014 ft (about)"), 2014 * 0.3048);
+    EXPECT_DOUBLE_EQ(metres("40 ft; 42 ft"), 12.192);
     EXPECT_DOUBLE_EQ(metres("high"), -1.0);
     EXPECT_DOUBLE_EQ(metres(""), -1.0);
     EXPECT_DOUBLE_EQ(metres("12 storeys"), -1.0);

@@ -52,6 +52,7 @@ struct Look
     int levels = 0;          ///< of another dimension
     bool kilometres = false; ///< axes of UTM in km, 2 km a cell
     bool bounds = false;     ///< attributes bound the valid values
+    double scale = 1.0;      ///< with bounds: of the numbers in the file
 };
 
 std::string write(const std::filesystem::path& file, const Look& look = {})
@@ -122,6 +123,7 @@ std::string write(const std::filesystem::path& file, const Look& look = {})
         const double range[] = {100.0, 250.0};
         const auto pair = rain->CreateAttribute("valid_range", {two}, numbers, nullptr);
         pair->Write(range, 2);
+        if (look.scale != 1.0) rain->SetScale(look.scale);
     }
     std::vector<float> values;
     for (int step = 0; step < 4; ++step)
@@ -426,6 +428,13 @@ TEST_F(SequenceRasters, MonthsGoByTheCalendar)
     EXPECT_EQ(raster->steps->times(), (std::vector<double>{first, *LayerClock::parseDate("2026-03-15"),
                                                            *LayerClock::parseDate("2026-06-15"),
                                                            *LayerClock::parseDate("2026-12-15")}));
+    // A year 0 stands for any year.
+    look.unit = "hour since 0000-01-01 00:00:00";
+    NotifyWatch silent;
+    raster = opened(write(path("climatology.nc"), look), frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_FALSE(raster->steps->dated());
+    EXPECT_EQ(raster->steps->times(), (std::vector<double>{0.0, 10800.0, 21600.0, 43200.0}));
     look.unit = "fortnights since 2025-12-15";
     NotifyWatch watch;
     const auto messages =
@@ -489,6 +498,12 @@ TEST_F(SequenceRasters, ValuesThatAttributesCallInvalidAreNone)
     EXPECT_GE(raster->lowest, 100.0);
     EXPECT_LE(raster->highest, 250.0);
     EXPECT_NEAR(valueOf(*raster, 1, frame, -157.0, 21.0), valueAt(-157.0, 21.0, 1), 0.02);
+    // They bound what the file holds, before its scale.
+    look.scale = 2.0;
+    const std::optional<SequenceRaster> scaled = opened(write(path("scaled.nc"), look), frame, error);
+    ASSERT_TRUE(scaled) << error;
+    EXPECT_NEAR(valueOf(*scaled, 1, frame, -157.0, 21.0), 2.0 * valueAt(-157.0, 21.0, 1), 0.04);
+    EXPECT_LE(scaled->highest, 500.0);
     const osg::ref_ptr<osg::Image> none = raster->steps->read(3, error);
     ASSERT_TRUE(none) << error;
     EXPECT_TRUE(std::isnan(*reinterpret_cast<const float*>(none->data(none->s() / 2, none->t() / 2))));

@@ -189,6 +189,10 @@ TEST(ColorRampFile, RulesOfGrass)
     EXPECT_EQ(table->at(0), blue);
     EXPECT_EQ(table->getNoDataColor(), osg::Vec4(1, 1, 1, 1));
     EXPECT_EQ(readText("0 #ff000080 # half\n")->at(0), color255(255, 0, 0, 128));
+    // A lone jump is no list that descends.
+    const auto jump = readText("5 255:0:0\n5 0:0:255\n");
+    EXPECT_EQ(jump->at(4.9), red);
+    EXPECT_EQ(jump->at(5), blue);
 }
 
 /// The sentence after the file's name with which a text is refused.

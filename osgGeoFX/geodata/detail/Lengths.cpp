@@ -157,7 +157,9 @@ std::optional<double> Lengths::read(const std::string& text, double metresPerPla
         const double inches = place < words.size() ? numberAt(words, place).value_or(0.0) : 0.0;
         return (*value + inches / 12.0) * METRES_PER_FOOT;
     }
-    const std::optional<double> metres = metresPerUnit(words.substr(place));
+    const std::string rest = words.substr(place);
+    std::optional<double> metres = metresPerUnit(rest);
+    if (!metres) metres = metresPerUnit(rest.substr(0, rest.find_first_of(" ;,(/")));
     if (!metres) return {};
     return *value * *metres;
 }

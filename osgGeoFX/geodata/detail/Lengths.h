@@ -23,7 +23,8 @@ public:
 
     /** A length in words, metres: "12", "12.5 m", "2,014 ft", "2 014 m", "12'6\"". Commas, spaces and apostrophes may stand
         between groups of three digits; any other comma is a decimal point. A number without a unit counts `metresPerPlain`.
-        Empty if the text begins with no number or goes on with anything but a unit. */
+        Words behind the unit, such as "(about)", are left out. Empty if the text begins with no number or goes on with anything
+        but a unit. */
     static std::optional<double> read(const std::string& text, double metresPerPlain = 1.0);
 
     /// Metres in the unit of a band of heights: that of the band, else that of the vertical part of the coordinate system. An

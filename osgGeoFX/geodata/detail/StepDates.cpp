@@ -5,6 +5,7 @@
 #include <osgGeoFX/mapping/LayerClock.h>
 
 #include <cpl_time.h>
+#include <osgDB/FileNameUtils>
 
 #include <algorithm>
 #include <cctype>
@@ -51,7 +52,7 @@ std::optional<double> secondOf(int year, int month, int dayOfMonth)
     return LayerClock::parseDate(date);
 }
 
-/// The beginning of the month that lies so many months behind that of a time, and what of the time lies behind its own month's.
+/// A time that lies so many whole months later, at the same day and hour of its month.
 double monthsLater(double start, double months)
 {
     std::tm at{};
@@ -66,9 +67,7 @@ double monthsLater(double start, double months)
 
 std::optional<TimeUnit> TimeUnit::parse(const std::string& text)
 {
-    std::string all = text;
-    std::transform(all.begin(), all.end(), all.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string all = osgDB::convertToLowerCase(text);
     TimeUnit unit;
     if (all == "sec utc") return unit;
     const std::size_t since = all.find(" since ");
@@ -80,7 +79,11 @@ std::optional<TimeUnit> TimeUnit::parse(const std::string& text)
     if (known == std::end(units)) return std::nullopt;
     unit.seconds = known->seconds;
     unit.months = known->months;
-    const std::optional<double> start = LayerClock::parseDate(text.substr(since + 7));
+    const std::string date = text.substr(since + 7);
+    const std::size_t zeros = date.find_first_not_of('0');
+    unit.dated = !(zeros != std::string::npos && zeros > 0 && date[zeros] == '-');
+    if (!unit.dated) return unit;
+    const std::optional<double> start = LayerClock::parseDate(date);
     if (!start) return std::nullopt;
     unit.start = *start;
     return unit;

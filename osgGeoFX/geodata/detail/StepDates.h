@@ -14,6 +14,7 @@ struct TimeUnit
     double seconds = 1.0; ///< of one unit; a mean for months and years
     int months = 0;       ///< of one unit, 1 or 12, if its length goes by the calendar; else 0
     double start = 0.0;   ///< seconds since 1970
+    bool dated = true;    ///< not so of a year 0, which climatologies have: their years stand for any
 
     /// Nothing for other texts.
     static std::optional<TimeUnit> parse(const std::string& text);

@@ -110,11 +110,13 @@ public:
         if (!_array)
         {
             const std::string names = listed(*root);
-            throw BuildError(_file + ": " +
-                             (name.empty()
-                                  ? std::string("no variable of it has a time, rows and columns")
-                                  : "it has no variable \"" + name + "\" with a time, rows and columns") +
-                             (names.empty() ? "; check it with gdalmdiminfo." : "; it has " + names + "."));
+            throw BuildError(
+                _file + ": " +
+                (name.empty() ? std::string("no variable of it has a time, rows and columns")
+                              : "it has no variable \"" + name + "\" with a time, rows and columns") +
+                (names.empty() ? "; look at it with gdalmdiminfo, and show what does not change with "
+                                 "--mapping."
+                               : "; it has " + names + "."));
         }
         variable = _array->GetName();
         unit = _array->GetUnit();
@@ -146,6 +148,12 @@ public:
         if (chain.empty())
             throw BuildError(_file + ": step " + std::to_string(index) + " of its variable " + variable +
                              " cannot be used (" + errors.message() + "); check it with gdalmdiminfo.");
+        double place[6];
+        if (chain.file().GetGeoTransform(place) != CE_None && !_array->GetCoordinateVariables().empty())
+            throw BuildError(
+                _file + ": the places of its variable " + variable +
+                " lie in variables of their own, as of a curved grid; bring each step to an even grid with "
+                "gdalwarp -geoloc, and name the folder of these.");
         const OGRSpatialReference* srs = chain.file().GetSpatialRef();
         const std::string degrees = lower(dimensions[_axes.x]->GetIndexingVariable()
                                               ? dimensions[_axes.x]->GetIndexingVariable()->GetUnit()
@@ -192,11 +200,18 @@ private:
         return _array->GetAttribute("missing_value") && _array->GetAttribute("_FillValue");
     }
 
-    /// The values of a step in memory, with NaN where attributes say that they are none.
+    /// The values of a step in memory, with NaN where attributes say that they are none. Throws where these are too many.
     DatasetPtr withoutInvalid(const GDALMDArray& slice, GDALDataset& plain) const
     {
         const GdalErrorScope errors;
         const int columns = plain.GetRasterXSize(), rows = plain.GetRasterYSize();
+        constexpr double most = 1 << 27; // a GiB
+        if (static_cast<double>(columns) * rows > most)
+            throw BuildError(
+                _file + ": a step of its variable " + variable + " has " + std::to_string(columns) + " × " +
+                std::to_string(rows) +
+                " values, and those that are not valid are sorted out in memory; cut a part out with "
+                "gdalmdimtranslate -subset.");
         GDALRasterBand& from = *plain.GetRasterBand(1);
         DatasetPtr result(GetGDALDriverManager()->GetDriverByName("MEM")->Create("", columns, rows, 1,
                                                                                  GDT_Float64, nullptr));
@@ -417,10 +432,10 @@ private:
             return;
         }
         // Years of other calendars have other days: their times count from the first one.
-        dated = usual;
+        dated = usual && unitOfTime->dated;
         const double first = times.front();
         for (double& time : times)
-            time = usual ? unitOfTime->timeOf(time) : (time - first) * unitOfTime->seconds;
+            time = dated ? unitOfTime->timeOf(time) : (time - first) * unitOfTime->seconds;
     }
 
     std::string _file;
