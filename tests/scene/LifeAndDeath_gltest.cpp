@@ -134,6 +134,12 @@ public:
         view->getCamera()->setViewMatrixAsLookAt(eye, osg::Vec3d(), osg::Z_AXIS);
     }
     void frame() { _viewer->frame(++_frames / 1000.0); }
+    /// Until no frame is on its way, so that the next one is the first to see what follows.
+    void settle()
+    {
+        _viewer->stopThreading();
+        _viewer->startThreading();
+    }
     /// The picture of the next frame.
     void request(std::size_t i) { _windows[i].capture->request(); }
     osg::ref_ptr<osg::Image> take(std::size_t i) { return _windows[i].capture->take(); }
@@ -359,6 +365,7 @@ TEST_P(LifeAndDeath, TheLastFrameOfASceneIsWhole)
         SCOPED_TRACE(kind);
         windows.frame();
         windows.frame();
+        windows.settle();
         windows.view(0).setSceneData(makeScene(kind));
         windows.request(0);
         windows.frame();
