@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// The order in which things of a scene are drawn: the nearest first, where any order gives the same picture.
+// The order in which things of a scene are drawn: an application's as OSG does, those of a database of the kit's the nearest first.
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/effect/detail/TileNormals.h>
+#include <osgGeoFX/effect/detail/TownState.h>
 #include <tools/BentGround.h>
 #include <tools/CullHarness.h>
 
 #include <osg/Depth>
+#include <osg/Texture2D>
 
 #include <algorithm>
 #include <map>
@@ -17,6 +20,18 @@ using namespace geofx::test;
 
 namespace
 {
+
+/// A state that is known by the name of a texture.
+void mark(osg::StateSet& state, unsigned int unit, const char* name)
+{
+    const osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
+    texture->setName(name);
+    state.setTextureAttribute(unit, texture);
+}
+void makeTile(osg::StateSet& state)
+{
+    mark(state, TileNormals::unit, TileNormals::texture);
+}
 
 /// Boxes ahead of the camera, each with a state of its own, as tiles have. Their names are the distances.
 class DrawingOrder : public BentGround
@@ -33,6 +48,7 @@ protected:
             ASSERT_NE(drawable, nullptr);
             drawable->setName(std::to_string(distance));
             _states[distance] = drawable->getOrCreateStateSet();
+            makeTile(*_states[distance]);
             _boxes->addChild(box);
         }
         _scene->addChild(_boxes);
@@ -72,12 +88,16 @@ TEST_F(DrawingOrder, IsFromNearToFarWithAndWithoutEffects)
 
 TEST_F(DrawingOrder, StaysWhereThePictureDependsOnIt)
 {
-    _states[300]->setAttributeAndModes(new osg::Depth(osg::Depth::LEQUAL));
-    EXPECT_EQ(order(), Order({100, 200, 300, 400}));
-    _states[100]->setMode(GL_DEPTH_TEST, osg::StateAttribute::OFF);
-    EXPECT_EQ(order(), Order({200, 100, 300, 400}));
     _states[200]->setMode(GL_BLEND, osg::StateAttribute::ON);
+    EXPECT_EQ(order(), Order({100, 300, 400, 200}));
+    // Nothing goes past what stays.
+    _states[100]->setMode(GL_DEPTH_TEST, osg::StateAttribute::OFF);
     EXPECT_EQ(order(), Order({400, 100, 300, 200}));
+    _states[100]->removeMode(GL_DEPTH_TEST);
+    _states[100]->setAttributeAndModes(new osg::Depth(osg::Depth::LEQUAL));
+    EXPECT_EQ(order(), Order({400, 100, 300, 200}));
+    _states[100]->removeAttribute(osg::StateAttribute::DEPTH);
+    EXPECT_EQ(order(), Order({100, 300, 400, 200}));
     _states[200]->removeMode(GL_BLEND);
     _boxes->getOrCreateStateSet()->setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
     EXPECT_EQ(order(), Order({400, 100, 300, 200}));
@@ -86,7 +106,7 @@ TEST_F(DrawingOrder, StaysWhereThePictureDependsOnIt)
 TEST_F(DrawingOrder, BuildingsAreDrawnBeforeTheGround)
 {
     const osg::ref_ptr<osg::Group> town = new osg::Group;
-    town->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    mark(*town->getOrCreateStateSet(), 0, TownState::texture);
     for (const int distance : {450, 250, 350})
     {
         const osg::ref_ptr<osg::MatrixTransform> box = makeBox(10.0f, osg::Vec3d(0.0, distance, 0.0));
@@ -108,6 +128,7 @@ TEST_F(DrawingOrder, OfATilesPartsIsTheSameWhicheverIsSeenFirst)
     const osg::ref_ptr<osg::MatrixTransform> tile = new osg::MatrixTransform;
     _scene->addChild(tile);
     const osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+    makeTile(*state);
     std::vector<osg::ref_ptr<osg::Geometry>> parts;
     for (int distance = 20; distance <= 1000; distance += 20)
     {
@@ -144,6 +165,42 @@ TEST_F(DrawingOrder, OfATilesPartsIsTheSameWhicheverIsSeenFirst)
     }
     EXPECT_TRUE(divided[0] && divided[1]);
     EXPECT_EQ(orders[0], orders[1]);
+}
+
+// Of two surfaces of equal depth, an application's scene shows the one that OSG draws first. A scene of the kit does the same, with and
+// without effects.
+TEST_F(DrawingOrder, OfAnApplicationsThingsIsOsgs)
+{
+    for (auto& [distance, state] : _states)
+        state->removeTextureAttribute(TileNormals::unit, osg::StateAttribute::TEXTURE);
+    EXPECT_EQ(order(), Order({400, 100, 300, 200}));
+    const osg::ref_ptr<VerticalExaggeration> high = new VerticalExaggeration;
+    high->setFactor(2.0);
+    _scene->addEffect(high);
+    EXPECT_EQ(order(), Order({400, 100, 300, 200}));
+    // Two quads in one place. The first has a state of its own, the second that of a group.
+    const auto quad = [](const osg::Vec4& color)
+    {
+        const osg::ref_ptr<osg::Geometry> result = osg::createTexturedQuadGeometry(
+            {-60.0f, -60.0f, 20.0f}, {120.0f, 0.0f, 0.0f}, {0.0f, 150.0f, 0.0f});
+        const osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(1);
+        colors->front() = color;
+        result->setColorArray(colors, osg::Array::BIND_OVERALL);
+        return result;
+    };
+    const auto pair = [&](osg::Group* top)
+    {
+        const osg::ref_ptr<osg::Geometry> first = quad({1.0f, 0.0f, 0.0f, 1.0f});
+        first->getOrCreateStateSet();
+        top->addChild(first);
+        const osg::ref_ptr<osg::Group> group = new osg::Group;
+        group->getOrCreateStateSet();
+        group->addChild(quad({0.0f, 0.0f, 1.0f, 1.0f}));
+        top->addChild(group);
+        return osg::ref_ptr<osg::Group>(top);
+    };
+    const osg::ref_ptr<osg::Image> expected = render(pair(new osg::Group));
+    EXPECT_TRUE(same(*render(pair(new EffectScene)), *expected));
 }
 
 TEST_F(DrawingOrder, OfTheHostStays)

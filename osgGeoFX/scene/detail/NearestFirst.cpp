@@ -3,6 +3,8 @@
 #include <osgGeoFX/scene/detail/NearestFirst.h>
 
 #include <osgGeoFX/effect/Tessellation.h>
+#include <osgGeoFX/effect/detail/TileNormals.h>
+#include <osgGeoFX/effect/detail/TownState.h>
 
 #include <osg/Depth>
 
@@ -17,7 +19,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// Whether what has this state gives the same picture in any order, as far as this state tells.
+/// Whether what has this state may be drawn in any order where no two surfaces have equal depths, as far as this state tells.
 bool admitsAnyOrder(const osg::StateSet& state)
 {
     for (const GLenum mode : {GL_BLEND, GL_STENCIL_TEST})
@@ -29,22 +31,49 @@ bool admitsAnyOrder(const osg::StateSet& state)
                                                 depth->getFunction() == osg::Depth::GREATER));
 }
 
-/// The same of all states above. Most graphs share them.
+/// Whether a state is that of a tile or a town of the kit's builder.
+bool isBuilt(const osg::StateSet& state)
+{
+    const auto named = [&](unsigned int unit, const char* name)
+    {
+        const osg::StateAttribute* texture = state.getTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+        return texture && texture->getName() == name;
+    };
+    return named(TileNormals::unit, TileNormals::texture) || named(0, TownState::texture);
+}
+
+/// What the states from the root down to a graph tell. Most graphs share those above.
 class Orders
 {
 public:
-    bool any(const osgUtil::StateGraph* graph)
+    /// Whether any order will do.
+    bool any(const osgUtil::StateGraph& graph)
     {
-        if (!graph) return true;
-        const auto [entry, isNew] = _known.try_emplace(graph, false);
-        if (!isNew) return entry->second;
-        const bool result =
-            (!graph->getStateSet() || admitsAnyOrder(*graph->getStateSet())) && any(graph->_parent);
-        return _known[graph] = result;
+        const Known known = of(&graph);
+        return known.built && known.admits;
     }
 
 private:
-    std::unordered_map<const osgUtil::StateGraph*, bool> _known;
+    struct Known
+    {
+        bool admits = true;
+        bool built = false;
+    };
+    Known of(const osgUtil::StateGraph* graph)
+    {
+        if (!graph) return {};
+        const auto entry = _known.find(graph);
+        if (entry != _known.end()) return entry->second;
+        Known known = of(graph->_parent);
+        if (const osg::StateSet* state = graph->getStateSet())
+        {
+            known.admits = known.admits && admitsAnyOrder(*state);
+            known.built = known.built || isBuilt(*state);
+        }
+        return _known[graph] = known;
+    }
+
+    std::unordered_map<const osgUtil::StateGraph*, Known> _known;
 };
 
 /// From the eye to where the thing is undeformed.
@@ -79,6 +108,30 @@ bool hasOwnState(const osgUtil::RenderLeaf& leaf)
     return PatchGeometry::originalOf(*leaf._drawable).getStateSet() != nullptr;
 }
 
+void sortGraphs(std::vector<osgUtil::StateGraph*>::iterator begin,
+                std::vector<osgUtil::StateGraph*>::iterator end)
+{
+    struct Entry
+    {
+        double distance; ///< squared, of a tile's frame; nothing in sight or out of it changes it
+        bool divided;
+        osgUtil::StateGraph* graph;
+    };
+    std::vector<Entry> entries;
+    for (auto graph = begin; graph != end; ++graph)
+    {
+        const osgUtil::RenderLeaf& first = *(*graph)->_leaves.front();
+        const double distance =
+            hasOwnState(first) && first._modelview ? first._modelview->getTrans().length2() : -1.0;
+        entries.push_back({distance, isDivided(first), *graph});
+        sortLeaves((*graph)->_leaves);
+    }
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const Entry& a, const Entry& b)
+                     { return std::tie(a.distance, a.divided) < std::tie(b.distance, b.divided); });
+    std::transform(entries.begin(), entries.end(), begin, [](const Entry& each) { return each.graph; });
+}
+
 } // namespace
 
 NearestFirst::NearestFirst(osgUtil::RenderBin& bin)
@@ -92,33 +145,21 @@ NearestFirst::NearestFirst(osgUtil::RenderBin& bin)
 void NearestFirst::sort()
 {
     if (!_sorts) return;
-    struct Entry
-    {
-        double distance; ///< squared, of a tile's frame; nothing in sight or out of it changes it
-        bool divided;
-        osgUtil::StateGraph* graph;
-    };
-    std::vector<Entry> entries;
-    std::vector<std::size_t> slots;
     Graphs& graphs = _bin.getStateGraphList();
     Orders orders;
-    for (std::size_t i = 0; i < graphs.size(); ++i)
+    const auto stays = [&](osgUtil::StateGraph* graph)
     {
-        auto& leaves = graphs[i]->_leaves;
-        if (leaves.empty() || std::binary_search(_before.begin(), _before.end(), graphs[i])) continue;
-        if (!orders.any(graphs[i])) continue;
-        const osgUtil::RenderLeaf& first = *leaves.front();
-        const double distance =
-            hasOwnState(first) && first._modelview ? first._modelview->getTrans().length2() : -1.0;
-        entries.push_back({distance, isDivided(first), graphs[i]});
-        slots.push_back(i);
-        sortLeaves(leaves);
+        return graph->_leaves.empty() || std::binary_search(_before.begin(), _before.end(), graph) ||
+               !orders.any(*graph);
+    };
+    // Nothing goes past what stays.
+    for (auto begin = graphs.begin(); begin != graphs.end();)
+    {
+        begin = std::find_if_not(begin, graphs.end(), stays);
+        const auto end = std::find_if(begin, graphs.end(), stays);
+        sortGraphs(begin, end);
+        begin = end;
     }
-    std::stable_sort(entries.begin(), entries.end(),
-                     [](const Entry& a, const Entry& b)
-                     { return std::tie(a.distance, a.divided) < std::tie(b.distance, b.divided); });
-    for (std::size_t i = 0; i < slots.size(); ++i)
-        graphs[slots[i]] = entries[i].graph;
 }
 
 } // namespace osgGeoFX

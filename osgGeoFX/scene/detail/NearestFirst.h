@@ -9,14 +9,17 @@
 namespace osgGeoFX
 {
 
-/** Puts what a cull traversal adds to a bin into the order of distances, so that what is near hides what is far before that is shaded.
+/** Puts the tiles and towns that a cull traversal adds to a bin into the order of distances, so that what is near hides what is far
+    before that is shaded.
 
-    OSG draws states in the order in which the traversal came by. Here what shares the state of a group is drawn first, for buildings and
-    trees stand before the ground. Things with a state of their own follow, such as tiles, by the distance of their frames. The drawables of one state are in the
-    order of the distances of their boxes. Only that is moved of which any order gives the same picture: without blending, and with a
-    depth test that admits no equal depths. A tile's place does not depend on what else is in sight, and its divided parts come after the others, so pictures with and without
-    culling are the same to the last bit. Where things in several frames share a state of their own, the first in sight counts for all: there pixels of
-    equal depths may differ. Not thread-safe. */
+    OSG draws states in the order in which the traversal came by. Where two surfaces have equal depths, that order tells which one
+    is seen, so an application's things keep it, and nothing goes past them. The surfaces of a database of the kit's builder meet
+    at edges alone. Among these, what shares the state of a group is drawn first, for buildings stand before the ground. Tiles
+    follow, by the distance of their frames. The drawables of one state are in the order of the distances of their boxes. A state
+    that blends, or has a depth test of its own, keeps them where they are.
+
+    A tile's place does not depend on what else is in sight, and its divided parts come after the others, so pictures with and without
+    culling are the same to the last bit. Not thread-safe. */
 class NearestFirst
 {
 public:

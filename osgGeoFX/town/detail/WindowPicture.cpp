@@ -3,6 +3,7 @@
 #include <osgGeoFX/town/detail/WindowPicture.h>
 
 #include <osgGeoFX/effect/RigidParts.h>
+#include <osgGeoFX/effect/detail/TownState.h>
 #include <osgGeoFX/town/detail/Scatter.h>
 
 #include <osg/Material>
@@ -140,7 +141,7 @@ osg::ref_ptr<osg::StateSet> createTownState()
 {
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
     osg::ref_ptr<osg::Texture2D> windows = new osg::Texture2D(WindowPicture::create());
-    windows->setName("geofx windows");
+    windows->setName(TownState::texture);
     windows->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
     windows->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
     windows->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
