@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/effect/DeformationChain.h>
 
+#include <osgGeoFX/effect/detail/AssemblyProgram.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 
 #include <algorithm>
@@ -268,6 +269,7 @@ void DeformationSwitch::meet(const osg::StateSet* state)
     if (!state) return;
     const osg::StateSet::RefAttributePair* attribute =
         state->getAttributeList().empty() ? nullptr : state->getAttributePair(osg::StateAttribute::PROGRAM);
+    if (!attribute) attribute = AssemblyProgram::of(*state);
     if (attribute && (!programOverridden || (attribute->second & osg::StateAttribute::PROTECTED)))
     {
         program = attribute->first;

@@ -61,11 +61,11 @@ vec4 tame(vec4 coordinates)
 }
 
 // The environments of OpenGL 2.1, Tables 3.22 and 3.23. `code` is 1 modulate, 2 replace, 3 decal, 4 blend, 5 add. It
-// has 8 more for base formats without alpha, 16 more for alpha alone, and 24 more for intensity.
+// has 8 more for base formats without alpha, 16 more for alpha alone, 24 more for intensity, and 32 more for depths that are compared.
 vec4 environment(int code, vec4 color, vec4 texel, vec4 constant)
 {
     int mode = code & 7;
-    int format = code >> 3;
+    int format = (code >> 3) & 3;
     if (mode == 2) return vec4(format == 2 ? color.rgb : texel.rgb, format == 1 ? color.a : texel.a);
     if (mode == 3) return vec4(mix(color.rgb, texel.rgb, texel.a), color.a);
     float alpha = color.a * texel.a;
@@ -82,17 +82,48 @@ vec4 environment(int code, vec4 color, vec4 texel, vec4 constant)
     return vec4(format == 2 ? color.rgb : color.rgb * texel.rgb, alpha);
 }
 
+// The color of a comparison. Samplers of GLSL 1.30 and later know nothing of the depth texture's mode.
+vec4 compared(int code, float passed)
+{
+    int format = (code >> 3) & 3;
+    return format == 2 ? vec4(0.0, 0.0, 0.0, passed) : vec4(vec3(passed), format == 3 ? passed : 1.0);
+}
+
 #ifdef GEOFX_TEXTURE_0
+#if (GEOFX_TEXTURE_0 & 32) != 0
+uniform sampler2DShadow geofx_texture0;
+#define geofx_texel0 compared(GEOFX_TEXTURE_0, textureProj(geofx_texture0, gl_TexCoord[0]))
+#else
 uniform sampler2D geofx_texture0;
+#define geofx_texel0 texture2DProj(geofx_texture0, tame(gl_TexCoord[0]))
+#endif
 #endif
 #ifdef GEOFX_TEXTURE_1
+#if (GEOFX_TEXTURE_1 & 32) != 0
+uniform sampler2DShadow geofx_texture1;
+#define geofx_texel1 compared(GEOFX_TEXTURE_1, textureProj(geofx_texture1, gl_TexCoord[1]))
+#else
 uniform sampler2D geofx_texture1;
+#define geofx_texel1 texture2DProj(geofx_texture1, tame(gl_TexCoord[1]))
+#endif
 #endif
 #ifdef GEOFX_TEXTURE_2
+#if (GEOFX_TEXTURE_2 & 32) != 0
+uniform sampler2DShadow geofx_texture2;
+#define geofx_texel2 compared(GEOFX_TEXTURE_2, textureProj(geofx_texture2, gl_TexCoord[2]))
+#else
 uniform sampler2D geofx_texture2;
+#define geofx_texel2 texture2DProj(geofx_texture2, tame(gl_TexCoord[2]))
+#endif
 #endif
 #ifdef GEOFX_TEXTURE_3
+#if (GEOFX_TEXTURE_3 & 32) != 0
+uniform sampler2DShadow geofx_texture3;
+#define geofx_texel3 compared(GEOFX_TEXTURE_3, textureProj(geofx_texture3, gl_TexCoord[3]))
+#else
 uniform sampler2D geofx_texture3;
+#define geofx_texel3 texture2DProj(geofx_texture3, tame(gl_TexCoord[3]))
+#endif
 #endif
 #ifdef GEOFX_MAP
 uniform sampler2D geofx_map;
@@ -149,16 +180,16 @@ void main()
 #endif
     vec4 color = primary;
 #ifdef GEOFX_TEXTURE_0
-    color = environment(GEOFX_TEXTURE_0, color, texture2DProj(geofx_texture0, tame(gl_TexCoord[0])), gl_TextureEnvColor[0]);
+    color = environment(GEOFX_TEXTURE_0, color, geofx_texel0, gl_TextureEnvColor[0]);
 #endif
 #ifdef GEOFX_TEXTURE_1
-    color = environment(GEOFX_TEXTURE_1, color, texture2DProj(geofx_texture1, tame(gl_TexCoord[1])), gl_TextureEnvColor[1]);
+    color = environment(GEOFX_TEXTURE_1, color, geofx_texel1, gl_TextureEnvColor[1]);
 #endif
 #ifdef GEOFX_TEXTURE_2
-    color = environment(GEOFX_TEXTURE_2, color, texture2DProj(geofx_texture2, tame(gl_TexCoord[2])), gl_TextureEnvColor[2]);
+    color = environment(GEOFX_TEXTURE_2, color, geofx_texel2, gl_TextureEnvColor[2]);
 #endif
 #ifdef GEOFX_TEXTURE_3
-    color = environment(GEOFX_TEXTURE_3, color, texture2DProj(geofx_texture3, tame(gl_TexCoord[3])), gl_TextureEnvColor[3]);
+    color = environment(GEOFX_TEXTURE_3, color, geofx_texel3, gl_TextureEnvColor[3]);
 #endif
 #ifdef GEOFX_COLOR_SUM
     color.rgb = bounded(color.rgb + secondary.rgb);

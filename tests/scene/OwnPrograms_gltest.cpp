@@ -9,6 +9,8 @@
 
 #include <osg/GLObjects>
 #include <osg/Geode>
+#include <osg/VertexProgram>
+#include <osgFX/AnisotropicLighting>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/RigidReference.h>
@@ -388,4 +390,66 @@ TEST_F(OwnProgramsTest, OfADrawableInAGeodeIsPickedWhereItIsDrawn)
         moved += own ? hits : -hits;
     }
     EXPECT_NE(moved, 0) << "the program makes no difference";
+}
+
+/// osgFX has programs in assembly language, which no function can be added to.
+TEST_F(OwnProgramsTest, InAssemblyLanguageKeepTheirLookAndPlace)
+{
+    const auto assembly = []
+    {
+        const osg::ref_ptr<osg::VertexProgram> program = new osg::VertexProgram;
+        program->setVertexProgram(
+            "!!ARBvp1.0\nOPTION ARB_position_invariant;\nMOV result.color, vertex.normal;\nEND\n");
+        return program;
+    };
+    const auto things = [&]
+    {
+        const osg::ref_ptr<osg::Group> all = new osg::Group;
+        for (const float x : {-20.0f, 20.0f})
+        {
+            const osg::ref_ptr<osg::MatrixTransform> box = makeBox(9.0f, {x, 20.0f, 0.0f});
+            box->getOrCreateStateSet()->setAttributeAndModes(assembly());
+            all->addChild(box);
+        }
+        return all;
+    };
+    const osg::ref_ptr<osg::Image> expected = render(things());
+    const osg::ref_ptr<EffectScene> scene = makeScene({things()});
+    osg::ref_ptr<osg::Image> actual;
+    const std::vector<std::string> said = saidOf(scene, &actual);
+    EXPECT_TRUE(same(*actual, *expected));
+    ASSERT_EQ(said.size(), 1u); // once for equal texts
+    EXPECT_TRUE(contains(said[0], "The program of osg::VertexProgram")) << said[0];
+    EXPECT_TRUE(contains(said[0], "is in assembly language, so what it draws stays where it is")) << said[0];
+    // A mode that is off leaves the drawing to the fixed functions, which are deformed.
+    const osg::ref_ptr<osg::Group> off = makePlain({makeBox(9.0f, {20.0f, 20.0f, 0.0f})});
+    const osg::ref_ptr<osg::Image> bent = render(makeScene({off}));
+    off->getOrCreateStateSet()->setAttribute(assembly());
+    EXPECT_TRUE(same(*render(makeScene({off})), *bent));
+}
+
+/// A node of osgFX pushes the states of its passes by itself.
+TEST_F(OwnProgramsTest, OfOsgFxKeepTheirLookAndPlace)
+{
+    const auto shining = []
+    {
+        const osg::ref_ptr<osgFX::AnisotropicLighting> result = new osgFX::AnisotropicLighting;
+        result->addChild(makeBox(9.0f, {20.0f, 20.0f, 0.0f}));
+        result->addChild(makeBox(9.0f, {-20.0f, 30.0f, 0.0f}));
+        return result;
+    };
+    const auto second = [this](osg::Node* scene)
+    {
+        render(scene);
+        return render(scene);
+    };
+    const osg::ref_ptr<osg::Image> expected = second(shining());
+    const osg::ref_ptr<osgFX::AnisotropicLighting> dull = shining();
+    dull->setEnabled(false);
+    EXPECT_GT(differing(*expected, *second(dull)), 100);
+    osg::ref_ptr<osg::Image> actual;
+    const osg::ref_ptr<EffectScene> scene = makeScene({shining()});
+    const std::vector<std::string> said = saidOf(scene, &actual);
+    EXPECT_TRUE(same(*actual, *expected));
+    EXPECT_EQ(said.size(), 1u);
 }

@@ -10,8 +10,11 @@
 #include <osg/LightSource>
 #include <osg/Program>
 #include <osgShadow/LightSpacePerspectiveShadowMap>
+#include <osgShadow/ParallelSplitShadowMap>
 #include <osgShadow/ShadowMap>
+#include <osgShadow/ShadowTexture>
 #include <osgShadow/ShadowedScene>
+#include <osgShadow/SoftShadowMap>
 #include <osgShadow/StandardShadowMap>
 #include <osgShadow/ViewDependentShadowMap>
 
@@ -78,6 +81,39 @@ std::vector<Technique> techniques()
             {"ViewDependentShadowMap", []
              {
                  return osg::ref_ptr<osgShadow::ShadowTechnique>(new osgShadow::ViewDependentShadowMap);
+             }}};
+}
+
+/// Those whose maps no program of the application looks up. (The shaders that a ViewDependentShadowMap may bring are refused by Mesa.)
+std::vector<Technique> otherTechniques()
+{
+    constexpr short size = 1024;
+    return {{"ViewDependentShadowMap",
+             []
+             {
+                 return osg::ref_ptr<osgShadow::ShadowTechnique>(new osgShadow::ViewDependentShadowMap);
+             }},
+            {"SoftShadowMap",
+             []
+             {
+                 osg::ref_ptr<osgShadow::SoftShadowMap> map = new osgShadow::SoftShadowMap;
+                 map->setTextureUnit(shadowUnit);
+                 map->setTextureSize({size, size});
+                 return map;
+             }},
+            {"ShadowTexture",
+             []
+             {
+                 osg::ref_ptr<osgShadow::ShadowTexture> texture = new osgShadow::ShadowTexture;
+                 texture->setTextureUnit(shadowUnit);
+                 return texture;
+             }},
+            {"ParallelSplitShadowMap", []
+             {
+                 osg::ref_ptr<osgShadow::ParallelSplitShadowMap> map =
+                     new osgShadow::ParallelSplitShadowMap(nullptr, 2);
+                 map->setTextureResolution(size);
+                 return map;
              }}};
 }
 
@@ -307,13 +343,23 @@ TEST_F(Shadows, OfTechniquesWithTheirOwnShadersLieOnTheBentGround)
     };
     const std::vector<SamePlace> places = samePlaces(*world(true, true), *world(false, true), blocks[0]);
     EXPECT_GT(places.size(), WIDTH * HEIGHT / 16u);
-    for (const Technique& technique : techniques())
+    std::vector<Technique> all = techniques();
+    all.pop_back();
+    // The others show no shadow of this caster, without the kit either.
+    for (const Technique& each : otherTechniques())
     {
-        if (technique.name == std::string("ViewDependentShadowMap")) continue;
+        if (each.name == std::string("ViewDependentShadowMap") || each.name == std::string("SoftShadowMap"))
+            all.push_back(each);
+    }
+    for (const Technique& technique : all)
+    {
         SCOPED_TRACE(technique.name);
+        const bool late = technique.name[0] == 'V';
         const auto picture = [&](bool bent, bool caster)
         {
-            return render(shadowed(*world(bent, caster), technique));
+            const osg::ref_ptr<osg::Group> scene = shadowed(*world(bent, caster), technique);
+            if (late) render(scene);
+            return render(scene);
         };
         const osg::ref_ptr<osg::Image> bent = picture(true, true), bentLit = picture(true, false);
         const osg::ref_ptr<osg::Image> straight = picture(false, true), straightLit = picture(false, false);
@@ -336,8 +382,7 @@ TEST_F(Shadows, OfTechniquesWithTheirOwnShadersLieOnTheBentGround)
 }
 
 // Techniques bring shaders that know nothing of the effects. Where the scene does not adapt them, what they draw is not deformed, neither
-// for the view nor for the light. (ViewDependentShadowMap puts its program into the state after the scene has been culled, when the kit's own shaders
-// stand for the fixed functions; with it, a scene needs a program of its own, as above.)
+// for the view nor for the light.
 TEST_F(Shadows, OfTechniquesWithTheirOwnShadersAreThoseOfAPlainGroup)
 {
     for (const Technique& technique : techniques())
@@ -356,5 +401,39 @@ TEST_F(Shadows, OfTechniquesWithTheirOwnShadersAreThoseOfAPlainGroup)
         // That it stays undeformed is said.
         watch().messagesOf([&] { actual = render(shadowed(*bentScene(blocks), technique)); });
         EXPECT_TRUE(same(*actual, *expected, technique.name));
+    }
+}
+
+// ViewDependentShadowMap puts its state into the render graph after the scene has been culled, so its first frame has no shadows.
+TEST_F(Shadows, OfWeakEffectsAreThoseOfAPlainGroup)
+{
+    const Blocks blocks = blocksAt(-40.0f);
+    const auto fill = [&](osg::Group& group)
+    {
+        group.addChild(makeGround());
+        for (const Block& block : blocks)
+            group.addChild(makeBox(block.size, block.place));
+    };
+    const auto second = [this](osg::Node* scene)
+    {
+        render(scene);
+        return render(scene);
+    };
+    for (const Technique& technique : otherTechniques())
+    {
+        SCOPED_TRACE(technique.name);
+        const osg::ref_ptr<osg::Group> plain = new osg::Group;
+        fill(*plain);
+        const osg::ref_ptr<osg::Image> expected = second(shadowed(*plain, technique));
+        plain->removeChild(1u);
+        EXPECT_GT(off(*expected, *second(shadowed(*plain, technique))), 100);
+        const osg::ref_ptr<EffectScene> scene = new EffectScene;
+        fill(*scene);
+        const osg::ref_ptr<VerticalExaggeration> lift = new VerticalExaggeration;
+        lift->setFactor(1.0001);
+        scene->addEffect(lift);
+        scene->setAdaptsPrograms(true);
+        const osg::ref_ptr<osg::Image> actual = second(shadowed(*scene, technique));
+        EXPECT_TRUE(imagesMatch(*actual, *expected, {16 / 255.0f, 0.001, 1.0f}, technique.name));
     }
 }

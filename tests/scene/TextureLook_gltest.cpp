@@ -118,6 +118,55 @@ TEST_F(TextureLook, Textures)
             });
 }
 
+// As a shadow map: a texture of depths gives how many of them pass.
+TEST_F(TextureLook, ComparedDepths)
+{
+    const std::pair<const char*, osg::Texture::ShadowTextureMode> kinds[] = {
+        {"luminance", osg::Texture::LUMINANCE},
+        {"intensity", osg::Texture::INTENSITY},
+        {"alpha", osg::Texture::ALPHA},
+    };
+    const std::pair<const char*, osg::TexEnv::Mode> modes[] = {
+        {"modulate ", osg::TexEnv::MODULATE},
+        {"replace ", osg::TexEnv::REPLACE},
+        {"blend ", osg::TexEnv::BLEND},
+        {"add ", osg::TexEnv::ADD},
+    };
+    for (const auto& [kindName, kind] : kinds)
+    {
+        for (const auto& [modeName, mode] : modes)
+        {
+            compare(std::string(modeName) + kindName,
+                    [chosenKind = kind, chosenMode = mode](const Place& place)
+                    {
+                        constexpr int size = 16;
+                        osg::ref_ptr<osg::Image> depths = new osg::Image;
+                        depths->allocateImage(size, size, 1, GL_DEPTH_COMPONENT, GL_FLOAT);
+                        for (int y = 0; y < size; ++y)
+                            for (int x = 0; x < size; ++x)
+                                *reinterpret_cast<float*>(depths->data(x, y)) =
+                                    (x / 2 + y / 2) % 2 ? 0.7f : 0.3f;
+                        osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(depths);
+                        texture->setInternalFormat(GL_DEPTH_COMPONENT24);
+                        texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+                        texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
+                        texture->setShadowComparison(true);
+                        texture->setShadowTextureMode(chosenKind);
+                        place.state().setTextureAttributeAndModes(1, texture);
+                        place.state().setTextureAttribute(1, new osg::TexEnv(chosenMode));
+                        osg::ref_ptr<osg::TexGen> gen = new osg::TexGen;
+                        gen->setMode(osg::TexGen::EYE_LINEAR);
+                        gen->setPlane(osg::TexGen::S, osg::Plane(0.2, 0.1, 0, 0.3));
+                        gen->setPlane(osg::TexGen::T, osg::Plane(0, 0.3, 0.2, -0.1));
+                        gen->setPlane(osg::TexGen::R, osg::Plane(0.1, 0, 0.1, 0.5));
+                        gen->setPlane(osg::TexGen::Q, osg::Plane(0, 0, 0, 1));
+                        place.state().setTextureAttributeAndModes(1, gen);
+                        place.scene.addChild(makeWaves());
+                    });
+        }
+    }
+}
+
 TEST_F(TextureLook, GeneratedCoordinates)
 {
     const auto withMode = [](osg::TexGen::Mode mode, bool perspective)

@@ -68,7 +68,7 @@ CompensatingCullVisitor::Lens::Lens(CompensatingCullVisitor& visitor, const osg:
     _changes = true;
     _formerMode = visitor.getCullingMode();
     visitor._proxied = engine;
-    visitor.pushProjectionMatrix(engine ? visitor._proxy.get() : visitor._projection.get());
+    visitor.pushProjectionWithFrusta(engine ? visitor._proxy.get() : visitor._projection.get());
     visitor.getProjectionCullingStack().back().setCullingMask(NO_CULLING);
     visitor.pushModelViewMatrix(visitor.getModelViewMatrix(), osg::Transform::RELATIVE_RF);
     visitor.getCurrentCullingSet().setCullingMask(NO_CULLING);
@@ -88,6 +88,7 @@ CompensatingCullVisitor::Scope::Scope(CompensatingCullVisitor& visitor, const os
     : _visitor(visitor), _former(visitor._mode)
 {
     if (!visitor._mode.ours) return;
+    visitor.meetPushed();
     visitor.meet(node.getStateSet());
     if (visitor._task.compensate) _skip = visitor.outOfSight(node);
     if (visitor._task.proxy && !_skip) _lens.emplace(visitor, node);
@@ -186,8 +187,14 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _top = _entry;
     _mode.planes = _sight.all();
     _scale = largestScale(*getModelViewMatrix());
-    _drawables.begin(
-        {_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR, _outerCullingMode != NO_CULLING, task.debugBounds});
+    // What the GPU divides reaches beyond its triangles.
+    const DepthRange::Meshes meshes =
+        task.tessellating                                    ? DepthRange::Meshes::No
+        : _outerNearFar == COMPUTE_NEAR_FAR_USING_PRIMITIVES ? DepthRange::Meshes::NearAndFar
+        : _outerNearFar == COMPUTE_NEAR_USING_PRIMITIVES     ? DepthRange::Meshes::Near
+                                                             : DepthRange::Meshes::No;
+    _drawables.begin({_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR, _outerCullingMode != NO_CULLING,
+                      task.debugBounds, meshes});
     // The drawables of engines are as large as the terrain, and say nothing of near and far.
     if (_task.open && _outerNearFar != DO_NOT_COMPUTE_NEAR_FAR && std::isfinite(_proxyDepths.second))
         _drawables.depths().include(_proxyDepths.first, _proxyDepths.second);
@@ -200,6 +207,13 @@ void CompensatingCullVisitor::pushMatrices(osgUtil::CullVisitor& outer)
     _projection = own ? createOrReuseMatrix(own->projection) : outer.getProjectionMatrix();
     _proxied = false;
     pushProjectionMatrix(_projection);
+    // In the eye space of the camera, also where a view of its own is drawn.
+    osg::CullingSet::StateFrustumList& frusta = getProjectionCullingStack().back().getStateFrustumList();
+    frusta = outer.getProjectionCullingStack().back().getStateFrustumList();
+    for (osg::CullingSet::StateFrustumPair& each : frusta)
+        if (own)
+            each.second.transformProvidingInverse(osg::Matrixd::inverse(own->modelView) *
+                                                  *outer.getModelViewMatrix());
     setVisibility(outer);
     // OSG's own tests, which the base class makes, pass everything.
     if (_task.compensate) getProjectionCullingStack().back().setCullingMask(NO_CULLING);
@@ -286,6 +300,7 @@ void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, const Task& task)
     if (task.inPass) pushStateSet(task.inPass);
     if (task.passState) pushStateSet(task.passState);
     _top = _currentStateGraph;
+    _mode.met = _top;
     task.traverse(*this);
     if (task.passState) popStateSet();
     if (task.inPass) popStateSet();
@@ -427,6 +442,20 @@ void CompensatingCullVisitor::meetAll(const osgUtil::StateGraph& state)
     meet(state.getStateSet());
 }
 
+void CompensatingCullVisitor::meetPushed()
+{
+    if (_currentStateGraph == _mode.met) return;
+    meetBelow(*_currentStateGraph);
+    _mode.met = _currentStateGraph;
+}
+
+void CompensatingCullVisitor::meetBelow(const osgUtil::StateGraph& state)
+{
+    if (&state == _mode.met) return;
+    if (state._parent) meetBelow(*state._parent);
+    meet(state.getStateSet());
+}
+
 void CompensatingCullVisitor::apply(RigidReference& node)
 {
     if (!_mode.ours)
@@ -436,6 +465,7 @@ void CompensatingCullVisitor::apply(RigidReference& node)
     }
     // Moved as a whole, and then culled and drawn as if nothing were deformed.
     const Mode former = _mode;
+    meetPushed();
     meet(node.getStateSet());
     const osg::Matrixd& modelView = *getModelViewMatrix();
     const DeformationChain& placing = _task.placing && _mode.deformation.on ? *_task.placing : definedChain();
@@ -448,6 +478,10 @@ void CompensatingCullVisitor::apply(RigidReference& node)
     osg::Matrixd placement = rigidPlacement(placing, reference, node.getTurn());
     _mode.unplaced = osg::Matrixd::inverse(placement);
     if (_task.image) placement = _task.image->toView * placement * _task.image->toEye;
+    osg::CullingSet::StateFrustumList& frusta = getProjectionCullingStack().back().getStateFrustumList();
+    const osg::CullingSet::StateFrustumList formerFrusta = frusta;
+    for (osg::CullingSet::StateFrustumPair& each : frusta)
+        each.second.transformProvidingInverse(osg::Matrixd::inverse(placement));
     pushModelViewMatrix(createOrReuseMatrix(modelView * placement), osg::Transform::RELATIVE_RF);
     meet(_task.untouched);
     pushStateSet(_task.untouched);
@@ -459,7 +493,15 @@ void CompensatingCullVisitor::apply(RigidReference& node)
     popStateSet();
     popStateSet();
     popModelViewMatrix();
+    getProjectionCullingStack().back().getStateFrustumList() = formerFrusta;
     _mode = former;
+}
+
+void CompensatingCullVisitor::pushProjectionWithFrusta(osg::RefMatrix* projection)
+{
+    const osg::CullingSet::StateFrustumList frusta = getProjectionCullingStack().back().getStateFrustumList();
+    pushProjectionMatrix(projection);
+    getProjectionCullingStack().back().getStateFrustumList() = frusta;
 }
 
 osg::StateSet* CompensatingCullVisitor::placed(const osg::Matrixd& placement)
@@ -597,44 +639,84 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
     }
     if (drawByHost(drawable)) return;
     const Mode former = _mode;
+    meetPushed();
     meet(drawable.getStateSet());
+    const int pushed = pushStatesOfFrusta(drawable);
     if (_mode.stranger) noteStranger();
-    if (!_task.compensate)
-    {
-        osg::StateSet* look = nullptr;
-        osg::Geometry* const twin = divided(drawable, look);
-        if (twin)
-            pushStateSet(_ofPatches);
-        else
-            look = _looks.lookFor(drawable, *_currentStateGraph);
-        if (!look) look = _looks.followingOf(_mode.deformation.program);
-        if (look) pushStateSet(look);
-        osg::StateSet* const ofTwin = twin ? drawable.getStateSet() : nullptr;
-        if (ofTwin) pushStateSet(ofTwin);
-        const osg::StateSet* own = twin ? nullptr : drawable.getStateSet();
-        const osgUtil::StateGraph* graph = own ? _currentStateGraph->find_or_insert(own) : _currentStateGraph;
-        const bool empty = graph->leaves_empty();
-        CullVisitor::apply(twin ? *twin : drawable);
-        if (empty && !graph->leaves_empty()) _ownGraphs.push_back(graph);
-        if (ofTwin) popStateSet();
-        if (look) popStateSet();
-        if (twin) popStateSet();
-        drawCompanions(drawable, getModelViewMatrix(), 0.0);
-        _mode = former;
-        return;
-    }
+    bool culled = false;
     if (osg::Callback* callback = drawable.getCullCallback())
     {
         osg::DrawableCullCallback* cull = callback->asDrawableCullCallback();
-        if (cull && cull->cull(this, &drawable, &_renderInfo))
-        {
-            _mode = former;
-            return;
-        }
+        culled = cull && cull->cull(this, &drawable, &_renderInfo);
         if (!cull) callback->run(&drawable, this);
     }
-    place(drawable);
+    if (!culled)
+    {
+        if (_task.compensate)
+            place(drawable);
+        else
+            placeAsOsg(drawable);
+    }
+    for (int i = 0; i < pushed; ++i)
+        popStateSet();
     _mode = former;
+}
+
+int CompensatingCullVisitor::pushStatesOfFrusta(osg::Drawable& drawable)
+{
+    // Those of the eye space: tiles and billboards have no culling sets of their own.
+    const osg::CullingSet::StateFrustumList& frusta =
+        getProjectionCullingStack().back().getStateFrustumList();
+    const osg::BoundingBox& bounds = drawable.getBoundingBox();
+    int pushed = 0;
+    for (const auto& [state, frustum] : frusta)
+    {
+        // Not by the polytope's own test, which leaves out planes that hold what was tested last.
+        const auto misses = [&](osg::Plane plane)
+        {
+            plane.transformProvidingInverse(*getModelViewMatrix());
+            return plane.intersect(bounds) < 0;
+        };
+        const osg::Polytope::PlaneList& planes = frustum.getPlaneList();
+        if (std::any_of(planes.begin(), planes.end(), misses)) continue;
+        osg::StateSet* const own = pushed == 0 ? drawable.getStateSet() : nullptr;
+        for (osg::StateSet* each : {own, state.get()})
+        {
+            if (!each) continue;
+            pushStateSet(each);
+            ++pushed;
+        }
+        meet(state);
+    }
+    _mode.ownStatePushed = pushed > 0;
+    return pushed;
+}
+
+void CompensatingCullVisitor::draw(osg::Drawable& drawable, double depth)
+{
+    osg::StateSet* look = nullptr;
+    osg::StateSet* const own = ownState(drawable);
+    if (osg::Geometry* const twin = divided(drawable, look))
+    {
+        pushStateSet(_ofPatches);
+        addLeaf(*twin, own, look, depth);
+        popStateSet();
+    }
+    else
+        addLeaf(drawable, own, _looks.lookFor(drawable, own, *_currentStateGraph), depth);
+}
+
+void CompensatingCullVisitor::placeAsOsg(osg::Drawable& drawable)
+{
+    osg::RefMatrix& modelView = *getModelViewMatrix();
+    const osg::BoundingBox& bounds = drawable.getBoundingBox();
+    const bool culled = drawable.isCullingActive() && isCulled(bounds);
+    const bool behind = !culled && getComputeNearFarMode() != DO_NOT_COMPUTE_NEAR_FAR && bounds.valid() &&
+                        !updateCalculatedNearFar(modelView, drawable, false);
+    const double depth = bounds.valid() ? -(osg::Vec3d(bounds.center()) * modelView).z() : 0.0;
+    if (!culled && !behind && std::isfinite(depth)) draw(drawable, depth);
+    // What an effect draws with it reaches farther.
+    drawCompanions(drawable, &modelView, 0.0);
 }
 
 void CompensatingCullVisitor::beginPatches(osg::Program& program, const osg::Viewport& viewport)
@@ -658,7 +740,7 @@ osg::Geometry* CompensatingCullVisitor::divided(osg::Drawable& drawable, osg::St
         return nullptr;
     osg::Geometry* const twin = _twins.of(*drawable.asGeometry());
     // Without a look an own program draws it.
-    if (twin) look = _dividedLooks.lookFor(drawable, *_currentStateGraph);
+    if (twin) look = _dividedLooks.lookFor(drawable, ownState(drawable), *_currentStateGraph);
     return look ? twin : nullptr;
 }
 

@@ -169,9 +169,11 @@ protected:
             1.0; ///< the share of its distance at which a thing is drawn, so that nothing at its place hides it
         /// Of what was placed as a whole: from the view's eye space back to where it stands.
         std::optional<osg::Matrixd> unplaced;
-        bool ours = true;           ///< false below cameras: OSG's culling, no state of ours
-        double lodRadius = 0.0;     ///< of the LOD that is asking for distances
-        double lodLimit = HUGE_VAL; ///< what it hears at most
+        bool ours = true;                         ///< false below cameras: OSG's culling, no state of ours
+        const osgUtil::StateGraph* met = nullptr; ///< down to which the state has been looked at
+        bool ownStatePushed = false;              ///< the drawable's own state set is in force already
+        double lodRadius = 0.0;                   ///< of the LOD that is asking for distances
+        double lodLimit = HUGE_VAL;               ///< what it hears at most
     };
 
     /// Whether the borders of the camera's picture cull; false where something else says what is wanted.
@@ -211,6 +213,11 @@ protected:
     void addLeaf(osg::Drawable& drawable, osg::RefMatrix* matrix, double depth);
     /// What is drawn in the place of a drawable whose triangles are to be divided, and its look; null where they are not.
     osg::Geometry* divided(osg::Drawable& drawable, osg::StateSet*& look);
+    /// The state set that is still to be pushed for a drawable.
+    osg::StateSet* ownState(osg::Drawable& drawable) const
+    {
+        return _mode.ownStatePushed ? nullptr : drawable.getStateSet();
+    }
     /// Draws what effects draw together with a drawable. `modelView`: to the camera's eye space.
     void drawCompanions(osg::Drawable& drawable, osg::RefMatrix* modelView, double depth);
     static void put(osgUtil::RenderBin& bin, osgUtil::StateGraph& from, osgUtil::StateGraph& to,
@@ -267,6 +274,18 @@ private:
     /// Takes a state set's word on whether what is below it is deformed.
     void meet(const osg::StateSet* state);
     void meetAll(const osgUtil::StateGraph& state);
+    /// Meets the state sets that a node has pushed by itself, such as the passes of osgFX.
+    void meetPushed();
+    void meetBelow(const osgUtil::StateGraph& state);
+    /// Pushes the state sets of the frusta that hold a drawable (osg::CullingSet::addStateFrustum), behind the drawable's own. Returns
+    /// how many state sets it has pushed.
+    int pushStatesOfFrusta(osg::Drawable& drawable);
+    /// Pushes a projection that has the frusta of the one below it.
+    void pushProjectionWithFrusta(osg::RefMatrix* projection);
+    /// Draws a drawable that is in sight.
+    void draw(osg::Drawable& drawable, double depth);
+    /// Draws a drawable as OSG does, without compensation.
+    void placeAsOsg(osg::Drawable& drawable);
     void begin(osgUtil::CullVisitor& outer, const Task& task);
     void end(osgUtil::CullVisitor& outer);
     /// What the define says, whatever the program does.

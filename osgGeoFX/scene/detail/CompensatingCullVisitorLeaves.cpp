@@ -94,18 +94,10 @@ void CompensatingCullVisitor::place(osg::Drawable& drawable)
     const bool ofEngine = _task.open && !_mode.chain->empty() && !comesWithOsg(&drawable);
     const DrawableSight::Place where = {*_mode.chain, matrix, _scale, _mode.planes, _mode.tile, !ofEngine};
     if (!_drawables.inSight(drawable, where, depth) || !std::isfinite(depth)) return;
-    osg::StateSet* look = nullptr;
     const bool shade = _task.depth.reversed() && GroundShade::is(drawable);
     if (shade && !_ofShades) _ofShades = GroundShade::createReversed();
     if (shade) pushStateSet(_ofShades);
-    if (osg::Geometry* const twin = divided(drawable, look))
-    {
-        pushStateSet(_ofPatches);
-        addLeaf(*twin, drawable.getStateSet(), look, depth);
-        popStateSet();
-    }
-    else
-        addLeaf(drawable, drawable.getStateSet(), _looks.lookFor(drawable, *_currentStateGraph), depth);
+    draw(drawable, depth);
     drawCompanions(drawable, getModelViewMatrix(), depth);
     if (shade) popStateSet();
 }
@@ -217,13 +209,15 @@ void CompensatingCullVisitor::adopt(osgUtil::RenderBin& bin, osgUtil::StateGraph
 {
     if (_task.compensate && bounds.valid())
     {
-        const EyeBox box =
-            EyeBox::of(bounds, inView(leaf._modelview ? osg::Matrixd(*leaf._modelview) : osg::Matrixd()));
+        const osg::Matrixd modelView =
+            inView(leaf._modelview ? osg::Matrixd(*leaf._modelview) : osg::Matrixd());
+        const EyeBox box = EyeBox::of(bounds, modelView);
         // Whoever has put it there did not know where it goes.
         const bool culled = leaf._drawable->isCullingActive() && _outerCullingMode != NO_CULLING;
         if (culled && _sight.outOfSight(*_mode.chain, box, _sight.all())) return;
         const Ball deformed = _mode.chain->bound(box.ball());
-        if (_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR) _drawables.depths().add(box, deformed, *_mode.chain);
+        if (_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR)
+            _drawables.depths().add(box, deformed, *_mode.chain, {leaf._drawable.get(), modelView});
         // What is transparent is drawn in the order in which it is seen.
         if (!_mode.chain->empty())
             leaf._depth = static_cast<float>(_drawables.depths().depthOf(deformed.center));
@@ -277,7 +271,11 @@ template<typename NodeType>
 void CompensatingCullVisitor::applyUntested(NodeType& node)
 {
     const Mode former = _mode;
-    if (_mode.ours) meet(node.getStateSet());
+    if (_mode.ours)
+    {
+        meetPushed();
+        meet(node.getStateSet());
+    }
     CullVisitor::apply(node);
     _mode = former;
 }
@@ -307,6 +305,7 @@ void CompensatingCullVisitor::apply(osg::ClearNode& node)
     // It clears the camera's picture, not that of a pass.
     const Mode former = _mode;
     osg::StateSet* state = node.getStateSet();
+    meetPushed();
     meet(state);
     if (state) pushStateSet(state);
     handle_cull_callbacks_and_traverse(node);

@@ -12,7 +12,7 @@ namespace osgGeoFX
 void DrawableSight::begin(const Wishes& wishes)
 {
     _wishes = wishes;
-    _depths.clear(_sight.depths());
+    _depths.clear(_sight.depths(), wishes.meshes, &_sight.frustum());
     _complaint.clear();
     if (wishes.bounds) _bounds.begin();
 }
@@ -57,7 +57,7 @@ bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, d
     if (place.chain.looksAtBoxes() && _complaint.empty() && !RigidParts::of(drawable))
         for (const auto& snapshot : place.chain.snapshots())
             if (_complaint.empty()) _complaint = snapshot->complaint(box);
-    if (depthWanted) _depths.add(box, deformed, place.chain, margin);
+    if (depthWanted) _depths.add(box, deformed, place.chain, {&drawable, place.modelView}, margin);
     if (_wishes.bounds) _bounds.add(box, place.chain);
     return true;
 }

@@ -25,6 +25,7 @@ public:
         bool depths = true;  ///< whether near and far are wanted
         bool hides = true;   ///< whether things that a deformation hides are left out
         bool bounds = false; ///< whether all boxes are to be shown
+        DepthRange::Meshes meshes = DepthRange::Meshes::No; ///< by which near and far go
     };
     /// Starts a traversal.
     void begin(const Wishes& wishes);

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/detail/EyeFrustum.h>
 
+#include <osgGeoFX/scene/detail/MeshDepths.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -152,9 +154,11 @@ bool EyeFrustum::missesPicture(const Hull& hull)
     return false;
 }
 
-void DepthRange::clear(const osg::Vec4d& depths)
+void DepthRange::clear(const osg::Vec4d& depths, Meshes meshes, const EyeFrustum* frustum)
 {
     _depths = depths;
+    _meshes = meshes;
+    _frustum = frustum;
     _candidates.clear();
     _nearest = DBL_MAX;
     _farthest = -DBL_MAX;
@@ -173,10 +177,19 @@ void DepthRange::include(const Ball& ball)
     include(depthOf(ball.center) - ball.radius, depthOf(ball.center) + ball.radius);
 }
 
-void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain, double margin)
+void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain, const Mesh& mesh,
+                     double margin)
 {
     const double depth = depthOf(deformed.center);
     if (!std::isfinite(depth) || !std::isfinite(deformed.radius)) return;
+    if (_meshes != Meshes::No && mesh.drawable)
+    {
+        // Nothing of it is certain.
+        if (!covers(deformed))
+            _candidates.push_back(
+                {box, &chain, depth - deformed.radius, depth + deformed.radius, margin, mesh});
+        return;
+    }
     // The middle is certain. After a few boxes, most others lie between the depths that are certain.
     include(depth, depth);
     if (depth - deformed.radius >= _nearest && depth + deformed.radius <= _farthest) return;
@@ -188,22 +201,49 @@ void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationC
         include(depth - half, depth + half);
         return;
     }
-    _candidates.push_back({box, &chain, depth - deformed.radius, depth + deformed.radius, margin});
+    _candidates.push_back({box, &chain, depth - deformed.radius, depth + deformed.radius, margin, {}});
 }
 
 void DepthRange::measure(Candidate& candidate)
 {
-    candidate.chain->bound(candidate.box, _hull, coarse);
-    _hull.margin += candidate.margin;
-    double nearest = DBL_MAX;
-    double farthest = -DBL_MAX;
-    for (const osg::Vec3d& point : _hull.points)
+    const bool mesh = _meshes != Meshes::No && candidate.mesh.drawable;
+    double nearest = candidate.nearest;
+    double farthest = candidate.farthest;
+    if (!candidate.ofBox)
     {
-        nearest = std::min(nearest, depthOf(point));
-        farthest = std::max(farthest, depthOf(point));
+        candidate.chain->bound(candidate.box, _hull, coarse);
+        _hull.margin += candidate.margin;
+        nearest = DBL_MAX;
+        farthest = -DBL_MAX;
+        for (const osg::Vec3d& point : _hull.points)
+        {
+            nearest = std::min(nearest, depthOf(point) - _hull.margin);
+            farthest = std::max(farthest, depthOf(point) + _hull.margin);
+        }
+        if (mesh)
+        {
+            // The triangles follow, where the box still counts.
+            candidate.ofBox = true;
+            candidate.nearest = std::max(candidate.nearest, nearest);
+            candidate.farthest = std::min(candidate.farthest, farthest);
+            if (_meshes == Meshes::NearAndFar) return;
+            if (candidate.farthest >= 0.0) _farthest = std::max(_farthest, candidate.farthest);
+            candidate.farthest = -DBL_MAX;
+            return;
+        }
     }
-    if (std::isfinite(nearest - _hull.margin) && std::isfinite(farthest + _hull.margin))
-        include(nearest - _hull.margin, farthest + _hull.margin);
+    else
+    {
+        const MeshDepths measured(*candidate.mesh.drawable, candidate.mesh.modelView, *candidate.chain,
+                                  _frustum->planes(), _depths);
+        if (measured.known)
+        {
+            nearest = measured.nearest;
+            farthest = _meshes == Meshes::NearAndFar ? measured.farthest : measured.nearest;
+            if (measured.nearest > measured.farthest) farthest = -DBL_MAX;
+        }
+    }
+    if (std::isfinite(nearest) && std::isfinite(farthest) && nearest <= farthest) include(nearest, farthest);
     // The candidate is done.
     candidate.nearest = DBL_MAX;
     candidate.farthest = -DBL_MAX;

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/effect/DeformationChain.h>
 
+#include <osg/Drawable>
 #include <osg/Matrixd>
 #include <osg/Polytope>
 #include <osg/Vec2d>
@@ -32,6 +33,8 @@ public:
     /// picture's border culls.
     void set(const osg::Polytope* planes, const osg::Matrixd& projection, bool sides);
     Mask all() const { return (1u << _planes.size()) - 1u; }
+    /// Positive on the inner side.
+    const std::vector<osg::Vec4d>& planes() const { return _planes; }
 
     /// Removes the planes from the mask that have the whole ball on their inner side.
     Side side(const Ball& ball, Mask& mask) const;
@@ -54,8 +57,16 @@ private:
 class DepthRange
 {
 public:
-    /// `depths`: what a depth is, as Visibility::depths() has it.
-    void clear(const osg::Vec4d& depths = {0.0, 0.0, -1.0, 0.0});
+    /// Which of the two ends go by triangles; else both go by boxes.
+    enum class Meshes
+    {
+        No,
+        Near,
+        NearAndFar
+    };
+    /// `depths`: what a depth is, as Visibility::depths() has it. `frustum`: within which triangles count; it must live until settle().
+    void clear(const osg::Vec4d& depths = {0.0, 0.0, -1.0, 0.0}, Meshes meshes = Meshes::No,
+               const EyeFrustum* frustum = nullptr);
     double depthOf(const osg::Vec3d& point) const
     {
         return _depths.x() * point.x() + _depths.y() * point.y() + _depths.z() * point.z() + _depths.w();
@@ -63,9 +74,16 @@ public:
     /// Depths that are certain.
     void include(const Ball& ball);
     void include(double nearest, double farthest);
+    /// A drawable, and its matrix to the view's eye space. It must live until settle().
+    struct Mesh
+    {
+        const osg::Drawable* drawable = nullptr;
+        osg::Matrixd modelView;
+    };
     /// Adds a box whose deformed shape lies within a ball. The chain must live until settle(). What the box holds may reach beyond
-    /// its image by `margin`, metres.
-    void add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain, double margin = 0.0);
+    /// its image by `margin`, metres. `mesh`: what it is the box of; without a drawable the box counts.
+    void add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain, const Mesh& mesh,
+             double margin = 0.0);
     /// Whether a ball lies between the depths that are certain so far. It need not be added then.
     bool covers(const Ball& ball) const
     {
@@ -82,8 +100,10 @@ private:
     {
         EyeBox box;
         const DeformationChain* chain;
-        double nearest, farthest; ///< of the ball
+        double nearest, farthest; ///< of the ball, then of the box
         double margin;
+        Mesh mesh;
+        bool ofBox = false; ///< whether they are those of the box
     };
     void measure(Candidate& candidate);
 
@@ -92,6 +112,8 @@ private:
     osg::Vec4d _depths = osg::Vec4d(0.0, 0.0, -1.0, 0.0);
     double _nearest = DBL_MAX;
     double _farthest = -DBL_MAX;
+    Meshes _meshes = Meshes::No;
+    const EyeFrustum* _frustum = nullptr;
 };
 
 } // namespace osgGeoFX

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/detail/FixedFunctionLook.h>
 
+#include <osgGeoFX/effect/detail/AssemblyProgram.h>
 #include <osgGeoFX/effect/detail/TileNormals.h>
 #include <osgGeoFX/scene/detail/OwnPrograms.h>
 
@@ -117,6 +118,18 @@ BaseFormat baseFormat(GLint format)
 /// The base format of a texture. OSG settles it at the upload; this is known before.
 BaseFormat baseFormat(const osg::Texture& texture)
 {
+    if (texture.getShadowComparison())
+    {
+        switch (texture.getShadowTextureMode())
+        {
+        case osg::Texture::INTENSITY:
+            return BaseFormat::Intensity;
+        case osg::Texture::ALPHA:
+            return BaseFormat::Alpha;
+        default:
+            return BaseFormat::Opaque;
+        }
+    }
     const osg::Image* image = texture.getImage(0);
     switch (texture.getInternalFormatMode())
     {
@@ -331,6 +344,8 @@ void FixedFunctionState::meet(const osg::StateSet& set)
             break;
         }
     }
+    if (const auto* assembly = AssemblyProgram::of(set))
+        setAttribute(Program, assembly->first.get(), assembly->second);
     const auto& modes = set.getTextureModeList();
     for (unsigned int i = 0; i < modes.size(); ++i)
     {
@@ -362,9 +377,8 @@ int FixedFunctionState::environment(unsigned int unit, bool& unsupported) const
 {
     const osg::Texture* texture = texture2D(_attributes[Image + 3 * unit]);
     if (!texture) return 0;
-    if (texture->getShadowComparison()) unsupported = true;
     return modeOf(_attributes[Environment + 3 * unit], unsupported) +
-           8 * static_cast<int>(baseFormat(*texture));
+           8 * static_cast<int>(baseFormat(*texture)) + (texture->getShadowComparison() ? 32 : 0);
 }
 
 int FixedFunctionState::texGen(unsigned int unit) const

@@ -38,7 +38,8 @@ void LookCache::begin(osg::Program* program, FollowingPrograms* following, int m
     _graph = nullptr;
 }
 
-osg::StateSet* LookCache::lookFor(const osg::Drawable& drawable, const osgUtil::StateGraph& graph)
+osg::StateSet* LookCache::lookFor(const osg::Drawable& drawable, const osg::StateSet* own,
+                                  const osgUtil::StateGraph& graph)
 {
     if (!_program) return nullptr;
     const bool otherGraph = &graph != _graph;
@@ -51,10 +52,10 @@ osg::StateSet* LookCache::lookFor(const osg::Drawable& drawable, const osgUtil::
     // The meshes of a tile share one state set.
     // Each look at a geometry's arrays costs as much as culling the geometry.
     const bool noNormal = _normals && hasNoNormal(drawable);
-    if (otherGraph || drawable.getStateSet() != _ownState || noNormal != _ownNoNormal)
+    if (otherGraph || own != _ownState || noNormal != _ownNoNormal)
     {
         _ownNoNormal = noNormal;
-        _ownState = drawable.getStateSet();
+        _ownState = own;
         FixedFunctionState state = _state;
         if (_ownState) state.meet(*_ownState);
         _ownLook = lookFor(state, noNormal);

@@ -32,8 +32,10 @@ public:
     /// What is drawn below the programs of an engine that assembles its shaders itself; null for nothing. After begin().
     void setHost(const ShaderHost* host, osg::StateSet* addition);
 
-    /// The look of a drawable. Null for one whose vertices a program of its own places.
-    osg::StateSet* lookFor(const osg::Drawable& drawable, const osgUtil::StateGraph& graph);
+    /// The look of a drawable with a state set of its own, or none, below a node of the state graph. Null for one whose vertices a
+    /// program of its own places.
+    osg::StateSet* lookFor(const osg::Drawable& drawable, const osg::StateSet* own,
+                           const osgUtil::StateGraph& graph);
     osg::StateSet* lookFor(const osg::Drawable& drawable, const FixedFunctionState& state);
     /// The copy of the program in force that has the effects' functions, or what its engine adds to it, for a drawable
     /// without a look. Null for a program that draws without them.

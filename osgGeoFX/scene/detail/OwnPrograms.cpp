@@ -6,6 +6,9 @@
 #include <osgGeoFX/scene/ShaderHost.h>
 #include <osgGeoFX/scene/detail/AdaptedPrograms.h>
 
+#include <osg/FragmentProgram>
+#include <osg/VertexProgram>
+
 #include <algorithm>
 #include <cctype>
 #include <functional>
@@ -126,14 +129,19 @@ bool OwnPrograms::callsFunctions(const osg::StateAttribute& program)
     return known.calls;
 }
 
-std::size_t OwnPrograms::numberOf(const osg::Program& program)
+std::size_t OwnPrograms::numberOf(const osg::StateAttribute& program)
 {
     std::string texts;
-    for (unsigned int i = 0; i < program.getNumShaders(); ++i)
+    const auto* shaders = dynamic_cast<const osg::Program*>(&program);
+    for (unsigned int i = 0; shaders && i < shaders->getNumShaders(); ++i)
     {
-        const osg::Shader& shader = *program.getShader(i);
+        const osg::Shader& shader = *shaders->getShader(i);
         texts += std::to_string(shader.getType()) + '\n' + shader.getShaderSource() + '\0';
     }
+    if (const auto* vertices = dynamic_cast<const osg::VertexProgram*>(&program))
+        texts = vertices->getVertexProgram();
+    if (const auto* fragments = dynamic_cast<const osg::FragmentProgram*>(&program))
+        texts = fragments->getFragmentProgram();
     return std::hash<std::string>()(texts);
 }
 

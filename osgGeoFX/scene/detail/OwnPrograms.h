@@ -41,8 +41,9 @@ public:
     /// Starts a frame. Each program is looked at once in a frame.
     void startFrame();
 
-    /// The same number for programs with equal texts, as the tiles of a database may have them.
-    static std::size_t numberOf(const osg::Program& program);
+    /// The same number for programs with equal texts, as the tiles of a database may have them. `program`: an osg::Program, or one in
+    /// assembly language.
+    static std::size_t numberOf(const osg::StateAttribute& program);
     /// A description for messages: the program's name, else its shaders' names, with the node where it draws.
     static std::string describe(const osg::StateAttribute& program, const osg::NodePath& path);
     /// Whether a shader's text calls a function that returns a vec4, comments and declarations apart.

@@ -55,14 +55,15 @@ void PassCullVisitor::place(osg::Drawable& drawable)
     const osg::Matrixd modelView = standing(viewMatrix());
     const EyeBox box = EyeBox::of(bounds, modelView);
     if (_filter->outside(box.ball())) return;
-    osg::StateSet* look = _looks.lookFor(drawable, *_currentStateGraph);
+    osg::StateSet* const own = ownState(drawable);
+    osg::StateSet* look = _looks.lookFor(drawable, own, *_currentStateGraph);
     const std::vector<osg::StateSet*>& states = _filter->states(drawable, box, modelView, drawsItself());
     osg::Drawable* const copy = drawn(drawable, states);
     if (!copy) return;
     for (osg::StateSet* state : states)
     {
         pushStateSet(state);
-        addLeaf(*copy, drawable.getStateSet(), look, -box.center.z());
+        addLeaf(*copy, own, look, -box.center.z());
         drawCompanions(drawable, getModelViewMatrix(), -box.center.z());
         popStateSet();
     }

@@ -5,6 +5,7 @@
 #include <osgGeoFX/effect/PassEffect.h>
 #include <osgGeoFX/effect/SurfaceEffect.h>
 #include <osgGeoFX/effect/Tessellation.h>
+#include <osgGeoFX/effect/detail/AssemblyProgram.h>
 #include <osgGeoFX/scene/CameraEffects.h>
 #include <osgGeoFX/scene/TilePrefetch.h>
 #include <osgGeoFX/scene/detail/AdaptedPrograms.h>
@@ -209,13 +210,17 @@ void SceneDrawing::warnOf(const CompensatingCullVisitor::Stranger& stranger)
         _strangersPurgeSize = 2 * _strangers.size() + 64;
     }
     const auto* program = dynamic_cast<const osg::Program*>(own.get());
-    if (program && !_strangerNumbers.insert(OwnPrograms::numberOf(*program)).second) return;
+    const bool assembly = AssemblyProgram::is(*own);
+    if ((program || assembly) && !_strangerNumbers.insert(OwnPrograms::numberOf(*own)).second) return;
     const auto adaptation = program ? AdaptedPrograms::instance().of(*program) : nullptr;
     const std::string why =
         adaptation ? " cannot be adapted, since " + adaptation->refusal() : " does not call geofx_vertex()";
-    OSG_WARN << "osgGeoFX: " << OwnPrograms::describe(*own, stranger.path) << why
+    OSG_WARN << "osgGeoFX: " << OwnPrograms::describe(*own, stranger.path)
+             << (assembly ? " is in assembly language" : why)
              << ", so what it draws stays where it is, without the scene's effects. "
-             << (program && !adaptation ? "Let the kit adapt it (EffectScene::adapt), or let" : "Let")
+             << (program && !adaptation ? "Let the kit adapt it (EffectScene::adapt), or let"
+                 : assembly             ? "Write it in GLSL, and let"
+                                        : "Let")
              << " its vertex shader call geofx_vertex() (EffectScene::addFunctions), or put what it draws "
                 "below an "
                 "osgGeoFX::RigidReference, or leave it out with setDefine(\"GEOFX_DEFORMATION\", OFF) in its "

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/detail/UndeformedParts.h>
 
+#include <osgGeoFX/effect/DeformationChain.h>
+
 #include <osg/NodeVisitor>
 #include <osg/StateSet>
 
@@ -29,12 +31,9 @@ public:
     void apply(osg::Node& node) override
     {
         const osg::StateSet* state = node.getStateSet();
-        if (state)
-        {
-            const osg::StateSet::DefinePair* define = state->getDefinePair("GEOFX_DEFORMATION");
-            found = found || (define && !(define->second & osg::StateAttribute::ON)) ||
-                    _programs.isStranger(state->getAttribute(osg::StateAttribute::PROGRAM));
-        }
+        DeformationSwitch own;
+        own.meet(state);
+        found = found || !own.on || _programs.isStranger(own.program);
         if (!found) traverse(node);
     }
 

@@ -42,6 +42,7 @@ public:
     double radiusOfPixel(const osg::Vec3d& point) const;
     /// What a depth in front of the camera's eye is, metres: the product with (x, y, z, 1).
     const osg::Vec4d& depths() const { return _depths; }
+    const EyeFrustum& frustum() const { return _frustum; }
 
     /// Whether a deformed ball is out of sight. Removes the planes from the mask that have the whole ball on their
     /// inner side. `mayBeSmall`: its size does not count.
