@@ -87,7 +87,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->type_name("FILE");
     app.add_option("--size", arguments.size,
                    "Its size: in pixels (1600x900), or on paper, such as A1@300dpi, A3-portrait@300dpi, "
-                   "90x60cm@200dpi")
+                   "Letter, 90x60cm@200dpi")
         ->type_name("WxH|PAPER@DPI");
     app.add_option(
            "--view-from", arguments.viewFrom,
@@ -307,7 +307,7 @@ void growStrokes(double factor, Recipe& recipe)
 /// Names and lines as the recipe has them, and the files for them that are asked for now.
 geofx::names::Options mapOptions(const Arguments& arguments, const Recipe& recipe)
 {
-    return {recipe.labels, recipe.lines,        recipe.labelStyle,
+    return {recipe.labels, recipe.labelField,   recipe.lines,           recipe.labelStyle,
             recipe.font,   arguments.names.svg, arguments.names.geoJson};
 }
 
@@ -323,6 +323,7 @@ void takeOptions(const Arguments& arguments, Recipe& recipe)
     take(arguments.treeCover, recipe.treeCover);
     take(arguments.vertical, recipe.vertical);
     take(arguments.names.style, recipe.labelStyle);
+    take(arguments.names.field, recipe.labelField);
     take(arguments.names.font, recipe.font);
     if (!arguments.names.files.empty()) recipe.labels = arguments.names.files;
     if (!arguments.names.lines.empty()) recipe.lines = arguments.names.lines;
@@ -500,7 +501,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
         map.prepare(whole, view);
         std::string error;
         if (!osgGeoFX::PicturePrint::write(scene, whole, view, raster, error)) throw Failure(error);
-        map.finish();
+        map.writeFiles();
     };
     if (division.any())
     {
@@ -561,12 +562,13 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     osgGeoFX::FrameStatistics unused;
     const auto image = renderer->render(view, 0.0, unused, error);
     if (!image) throw Failure(error);
-    map.finish(renderer->camera(), *image,
-               [&](const osg::Image& plain)
-               {
-                   if (page) page->setPicture(plain);
-               });
+    map.draw(renderer->camera(), *image,
+             [&](const osg::Image& plain)
+             {
+                 if (page) page->setPicture(plain);
+             });
     if (!pictures.write(*image, 0)) throw Failure(pictures.error());
+    map.writeFiles();
     if (!arguments.picks.empty()) printPicks(arguments, recipe, scene, {*scene.effects, renderer->camera()});
     renderer.reset();
     if (page) page->write(scene, options, view, map.names());

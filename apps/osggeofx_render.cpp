@@ -83,7 +83,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->type_name("FILE");
     app.add_option("--size", arguments.size,
                    "Size of the picture: in pixels, or on paper, such as A1@300dpi, A3-portrait@300dpi, "
-                   "90x60cm@200dpi")
+                   "Letter, 90x60cm@200dpi")
         ->type_name("WxH|PAPER@DPI")
         ->capture_default_str();
     app.add_option("--fov", arguments.fieldOfView,
@@ -282,7 +282,7 @@ std::string describe(const Arguments& arguments, const osgGeoFX::Scene& scene, c
         json["eye"] = {{"longitude", osg::RadiansToDegrees(longitude)},
                        {"latitude", osg::RadiansToDegrees(latitude)},
                        {"height", height}};
-    return json.dump();
+    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 /// The files that pictures are made of.
@@ -334,7 +334,7 @@ void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::n
         map.prepare(whole, view);
         std::string error;
         if (!osgGeoFX::PicturePrint::write(scene, whole, view, raster, error)) throw Failure(badInput, error);
-        map.finish();
+        map.writeFiles();
         if (page) page->write(scene, arguments.renderer, view, map.names());
         geofx::layers::write(arguments.layers, scene, size, arguments.renderer, map, view);
     };
@@ -410,14 +410,15 @@ public:
         std::string error;
         const auto image = _renderer->render(_camera.view(frame), _camera.time(frame), figures, error);
         if (!image) throw Failure(tookTooLong, error);
-        _map.finish(_renderer->camera(), *image,
-                    [&](const osg::Image& plain)
-                    {
-                        if (_page) _page->setPicture(plain);
-                    });
+        _map.draw(_renderer->camera(), *image,
+                  [&](const osg::Image& plain)
+                  {
+                      if (_page) _page->setPicture(plain);
+                  });
         if (_arguments.inset)
             addInset(_arguments.insetCorner, *image, *_renderer, _camera, frame, *_scene.effects);
         if (!_files.write(*image, frame)) throw Failure(badInput, _files.error());
+        _map.writeFiles();
         _statistics->add(figures);
     }
     void writeStatistics()

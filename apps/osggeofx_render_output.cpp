@@ -134,7 +134,7 @@ bool StatisticsFile::write(const std::string& file)
     getrusage(RUSAGE_SELF, &usage);
     _json["peak_memory_bytes"] = 1024 * static_cast<std::uint64_t>(usage.ru_maxrss);
     std::ofstream stream(file);
-    stream << _json.dump(2) << "\n";
+    stream << _json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
     stream.close();
     return static_cast<bool>(stream);
 }

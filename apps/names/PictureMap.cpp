@@ -28,6 +28,12 @@ PictureMap::PictureMap(const Options& options, const std::string& output, const 
                        osgGeoFX::Scene& scene, bool layered)
     : _options(options), _output(output), _size(size), _scene(scene), _layered(layered)
 {
+    constexpr int largest = osgGeoFX::PictureVectors::largestPdfSide;
+    if (isPdf(output) && std::max(size.width, size.height) > largest)
+        throw std::runtime_error("\"" + output + "\": pages of a PDF have up to " + std::to_string(largest) +
+                                 " pixels on a side, and this one would have " + std::to_string(size.width) +
+                                 " x " + std::to_string(size.height) +
+                                 "; take fewer for each inch, or write a TIFF.");
     _map = takeMap(options, scene, _notices);
     _names = _map.makeNames();
     if (_names) _names->setScale(size.height / usualHeight);
@@ -79,8 +85,8 @@ void PictureMap::takeLines(const osgGeoFX::SceneRenderer::Options& options, cons
     _placedLines = _placedLines->enlarged(larger);
 }
 
-void PictureMap::finish(const osg::Camera& camera, osg::Image& image,
-                        const std::function<void(const osg::Image& plain)>& beforeNames)
+void PictureMap::draw(const osg::Camera& camera, osg::Image& image,
+                      const std::function<void(const osg::Image& plain)>& beforeNames)
 {
     if (_names) _placedNames.emplace(*_names, *_scene.effects, camera, _reader->pictures());
     if (wantsLineVectors()) takeLines(camera, *_reader, _size.height / usualHeight);
@@ -96,7 +102,6 @@ void PictureMap::finish(const osg::Camera& camera, osg::Image& image,
         beforeNames(image);
     }
     if (_placedNames && onPicture()) _placedNames->drawOnto(image);
-    write();
 }
 
 void PictureMap::prepare(osgGeoFX::PicturePrint::Options& options, const osg::Matrixd& view)
@@ -115,7 +120,7 @@ void PictureMap::prepare(osgGeoFX::PicturePrint::Options& options, const osg::Ma
         };
 }
 
-void PictureMap::write()
+void PictureMap::writeFiles()
 {
     osgGeoFX::PictureVectors vectors;
     vectors.width = _size.width;
@@ -135,9 +140,11 @@ void PictureMap::write()
     if (!isPdf(_output)) return;
     const bool written = vectors.writePdf(_output, rasterOf(_output), _size.dpi > 0.0 ? _size.dpi : usualDpi,
                                           fs::path(_output).stem().string(), error);
+    if (!written)
+        throw std::runtime_error(error + " The picture without names and lines is " + rasterOf(_output) +
+                                 ".");
     std::error_code ignored;
     fs::remove(rasterOf(_output), ignored);
-    if (!written) throw std::runtime_error(error);
 }
 
 } // namespace geofx::names

@@ -49,15 +49,15 @@ public:
 
     /// For pictures of a renderer: call it before the renderer is made.
     void prepare();
-    /// For a picture that a renderer has just drawn: draws on it, and writes the files. `camera`: SceneRenderer::camera().
+    /// For a picture that a renderer has just drawn: draws on it. `camera`: SceneRenderer::camera().
     /// `beforeNames`: called with the picture as it is with its lines and without names, even where both become vectors.
-    void finish(const osg::Camera& camera, osg::Image& image,
-                const std::function<void(const osg::Image& plain)>& beforeNames = {});
+    void draw(const osg::Camera& camera, osg::Image& image,
+              const std::function<void(const osg::Image& plain)>& beforeNames = {});
 
     /// For a print: sets what it does with names and lines. `view`: the print's.
     void prepare(osgGeoFX::PicturePrint::Options& options, const osg::Matrixd& view);
-    /// … and writes the files when the print is there.
-    void finish() { write(); }
+    /// Writes the files for names and lines, once the picture or the print is written: what fails here takes nothing from it.
+    void writeFiles();
 
 private:
     bool onPicture() const { return _options.svg.empty() && !isPdf(_output); }
@@ -69,7 +69,6 @@ private:
     void takeLines(const osgGeoFX::SceneRenderer::Options& options, const osg::Matrixd& view);
     /// Whether lines are drawn over what the scene has drawn.
     bool drawsLines() const { return _placedLines && (_layered || !onPicture()); }
-    void write();
 
     const Options _options;
     const std::string _output;

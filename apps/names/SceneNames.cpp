@@ -23,6 +23,7 @@ std::string faultOf(const Options& options, bool names, bool lines)
 {
     if (!names && !lines && !(options.svg + options.geoJson).empty())
         return "--svg and --geojson are for names and lines; give some with --labels or --lines.";
+    if (!names && !options.field.empty()) return "--label-field is for names; give some with --labels.";
     if (!names && !options.font.empty()) return "--font is for names; give some with --labels.";
     if (!names && !lines && !options.style.empty())
         return "--style is for names and lines; give some with --labels or --lines.";
@@ -60,6 +61,9 @@ void addOptions(CLI::App& app, Options& options)
         ->allow_extra_args(false)
         ->type_name("FILE")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--label-field", options.field,
+                   "The field, or tag of OpenStreetMap, that has the names (default: name, label or title)")
+        ->type_name("FIELD");
     app.add_option(
            "--lines", options.lines,
            "Lines to put onto the ground, such as roads, lifts and rivers: vector data of any kind that "
@@ -100,6 +104,7 @@ std::string agesOf(const Options& options)
     for (const auto* const files : {&options.files, &options.lines})
         for (const std::string& file : *files)
             ages += "; " + file + ageOf(fileAndLayer(file).first);
+    if (!options.field.empty()) ages += "; by " + options.field;
     return ages + "; " + options.style + ageOf(options.style) + (options.svg.empty() ? "" : "; as vectors");
 }
 
@@ -122,7 +127,9 @@ osgGeoFX::MapContents takeMap(const Options& options, const osgGeoFX::Scene& sce
     for (const std::string& each : options.files)
     {
         const auto [file, layer] = fileAndLayer(each);
-        if (!reader.readNames(file, layer, error)) throw Fault(error);
+        if (!reader.readNames(file, layer, options.field.empty() ? map.styles.nameField : options.field,
+                              error))
+            throw Fault(error);
     }
     for (const std::string& each : options.lines)
     {

@@ -24,6 +24,7 @@ constexpr double usualHeight = 900.0;
 struct Options
 {
     std::vector<std::string> files; ///< vector data with names, or FILE:LAYER
+    std::string field; ///< the field of the names; empty: as the style file says, or the usual ones
     std::vector<std::string> lines; ///< vector data with lines, or FILE:LAYER
     std::string style;              ///< a JSON file; empty for the usual styles
     std::string font;               ///< a font's file or its families; empty for the styles' own
@@ -31,7 +32,7 @@ struct Options
     std::string geoJson;            ///< a file for them in the picture's coordinates; empty: none
 };
 
-/// Adds --labels, --lines, --style, --font, --svg and --geojson to a program.
+/// Adds --labels, --label-field, --lines, --style, --font, --svg and --geojson to a program.
 void addOptions(CLI::App& app, Options& options);
 /// A sentence if one of them is given for nothing; else empty. `scene`: the file that is shown; where it may have names and lines itself, takeMap()
 /// tells.

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "panorama/Recipe.h"
 
+#include "names/SceneNames.h"
+
 #include <osgGeoFX/batch/WholeFile.h>
 
 #include <nlohmann/json.hpp>
@@ -21,21 +23,23 @@ namespace
 
 constexpr int newestFormat = 1;
 
-/// A path as a file in `folder` names it, and back. Addresses and GDAL's own file systems stay as they are.
+/// A path, or FILE:LAYER, as a file in `folder` names it, and back. Addresses and GDAL's own file systems stay as they are.
 std::string relativePath(const std::string& path, const fs::path& folder)
 {
+    const auto [file, layer] = names::fileAndLayer(path);
     std::error_code fault;
-    if (path.empty() || !fs::exists(path, fault)) return path;
-    const fs::path result = fs::relative(path, folder, fault);
-    return fault || result.empty() ? fs::absolute(path).string() : result.string();
+    if (file.empty() || !fs::exists(file, fault)) return path;
+    const fs::path result = fs::relative(file, folder, fault);
+    return (fault || result.empty() ? fs::absolute(file).string() : result.string()) +
+           (layer.empty() ? "" : ":" + layer);
 }
 
 std::string pathFrom(const std::string& path, const fs::path& folder)
 {
     if (path.empty() || fs::path(path).is_absolute()) return path;
     std::error_code fault;
-    const fs::path beside = folder / path;
-    return fs::exists(beside, fault) ? beside.string() : path;
+    const std::string beside = (folder / path).string();
+    return fs::exists(names::fileAndLayer(beside).first, fault) ? beside : path;
 }
 
 fs::path folderOf(const std::string& file)
@@ -120,6 +124,7 @@ Recipe Recipe::read(const std::string& file)
         for (const auto& lines : json.value("lines", Json::array()))
             recipe.lines.push_back(pathFrom(lines.get<std::string>(), folder));
         recipe.labelStyle = pathFrom(json.value("labelStyle", ""), folder);
+        recipe.labelField = json.value("labelField", "");
         recipe.font = pathFrom(json.value("font", ""), folder);
         if (json.contains("liberties")) json.at("liberties").get_to(recipe.liberties);
     }
@@ -178,6 +183,7 @@ Json jsonOf(const Recipe& recipe, const fs::path& folder)
     for (const std::string& lines : recipe.lines)
         json["lines"].push_back(relativePath(lines, folder));
     put("labelStyle", recipe.labelStyle);
+    if (!recipe.labelField.empty()) json["labelField"] = recipe.labelField;
     put("font", recipe.font);
     json["reasons"] = recipe.reasons;
     return json;
@@ -189,12 +195,13 @@ std::string Recipe::text() const
 {
     Json json = jsonOf(*this, ".");
     json.erase("reasons");
-    return json.dump();
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 void Recipe::write(const std::string& file) const
 {
-    const std::string text = jsonOf(*this, folderOf(file)).dump(2) + "\n";
+    const std::string text =
+        jsonOf(*this, folderOf(file)).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     if (osgGeoFX::writeWholeFile(file, text.data(), text.size()) != 0)
         throw Failure(file + ": cannot be written; check the folder, its permissions and the disk's space.");
 }

@@ -41,6 +41,7 @@ struct Recipe
     std::vector<std::string> labels;  ///< files with names, or FILE:LAYER
     std::vector<std::string> lines;   ///< files with lines, or FILE:LAYER
     std::string labelStyle;           ///< a style file; empty for the usual styles
+    std::string labelField;           ///< the field of the names; empty for the usual ones
     std::string font;                 ///< a font's file or families; empty for the styles'
     std::vector<std::string> reasons; ///< for people; not read
     /// The properties of each liberty (RegionalLiberty) that are not their defaults, as those of the map. They come before it.

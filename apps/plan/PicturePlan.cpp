@@ -113,7 +113,7 @@ void PicturePlan::write(const std::string& folder) const
     std::string text;
     try
     {
-        text = document.dump(2) + "\n";
+        text = document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     }
     catch (const nlohmann::json::exception&)
     {

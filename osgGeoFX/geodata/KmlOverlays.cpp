@@ -58,10 +58,12 @@ public:
                 throw BuildError(_file + ": it has more than " + std::to_string(mostOverlays) +
                                  " ground overlays; split it, or make one raster of them with gdalbuildvrt.");
         }
+        if (_found.empty() && !_firstFault.empty()) throw BuildError(_firstFault);
         if (_found.empty())
             throw NoOverlays(_file +
                              ": it has no ground overlays; its lines are read with --route or --lines, its "
                              "points with --labels.");
+        showEarliest();
         std::stable_sort(_found.begin(), _found.end(),
                          [](const KmlOverlay& a, const KmlOverlay& b) { return a.order < b.order; });
         return std::move(_found);
@@ -86,13 +88,56 @@ private:
         _queue.push_back({document, inherited});
     }
 
-    std::string resolved(const std::string& document, const std::string& href, int line) const
+    /// Empty, with a notice, where it leads out of the folder or to nothing.
+    std::string resolved(const std::string& document, const std::string& href, int line)
     {
+        const std::string name =
+            KmlFolder::plain(document) + ":" + std::to_string(line) + ": \"" + href + "\"";
         const std::optional<std::string> path = _folder.resolve(document, href);
+        VSIStatBufL status;
         if (!path)
-            throw BuildError(KmlFolder::plain(document) + ":" + std::to_string(line) + ": \"" + href +
-                             "\" leads out of the folder of " + _file + "; " + remedy);
-        return *path;
+            leaveOut(name + " leads out of the folder of " + _file + ", and is left out; " + remedy);
+        else if (path->empty())
+            leaveOut(name +
+                     " is no picture and no KML, and is left out; name a PNG, JPEG, GIF, TIFF, BMP, WebP or "
+                     "JPEG 2000.");
+        else if (path->rfind("/vsicurl/", 0) != 0 && VSIStatL(path->c_str(), &status) != 0)
+            leaveOut(name + " is not there, and is left out; put it there, or correct the name.");
+        else
+            return *path;
+        return {};
+    }
+
+    void leaveOut(const std::string& sentence)
+    {
+        if (_firstFault.empty()) _firstFault = sentence;
+        if (++_leftOut > mostNotices) return;
+        _notices.push_back(sentence +
+                           (_leftOut == mostNotices ? " So are others, which are not named." : ""));
+    }
+
+    /// Pictures of one place at different times would hide each other.
+    void showEarliest()
+    {
+        std::string first;
+        for (const KmlOverlay& each : _found)
+        {
+            const std::string& time = each.begin.empty() ? each.end : each.begin;
+            if (!time.empty() && (first.empty() || time < first)) first = time;
+        }
+        std::size_t later = 0;
+        for (KmlOverlay& each : _found)
+        {
+            // "2026" reaches to its last second.
+            const bool isThere =
+                each.begin <= first && (each.end.empty() || first.substr(0, each.end.size()) <= each.end);
+            if (first.empty() || isThere || !each.visible) continue;
+            each.visible = false;
+            ++later;
+        }
+        if (later > 0)
+            _notices.push_back(_file + ": of its ground overlays with times those of " + first +
+                               " are shown; " + std::to_string(later) + " of other times are switched off.");
     }
 
     void take(const Link& link)
@@ -109,28 +154,21 @@ private:
             {
                 overlay.overlay.image = resolved(link.document, overlay.href, overlay.line);
                 // No picture at all means a plain color.
-                if (overlay.overlay.image.empty())
-                    throw BuildError(
-                        KmlFolder::plain(link.document) + ":" + std::to_string(overlay.line) + ": \"" +
-                        overlay.href +
-                        "\" is no picture; name a PNG, JPEG, GIF, TIFF, BMP, WebP or JPEG 2000.");
+                if (overlay.overlay.image.empty()) continue;
+            }
+            if (overlay.inAir && !_toldOfAir)
+            {
+                _toldOfAir = true;
+                _notices.push_back(
+                    KmlFolder::plain(link.document) + ":" + std::to_string(overlay.line) +
+                    ": the ground overlay has an altitude, and is shown on the ground. So are others.");
             }
             _found.push_back(std::move(overlay.overlay));
         }
         for (const KmlReader::Link& next : content.links)
         {
             const std::string document = resolved(link.document, next.href, next.line);
-            VSIStatBufL status;
-            if (document.empty() || VSIStatL(document.c_str(), &status) != 0)
-            {
-                if (++_missing > mostNotices) continue;
-                _notices.push_back(KmlFolder::plain(link.document) + ":" + std::to_string(next.line) +
-                                   ": the file \"" + next.href +
-                                   "\" that it links is not there, and is left out." +
-                                   (_missing == mostNotices ? " So are others, which are not named." : ""));
-                continue;
-            }
-            add(document, next.inherited);
+            if (!document.empty()) add(document, next.inherited);
         }
     }
 
@@ -141,7 +179,9 @@ private:
     std::set<std::string> _seen;
     std::vector<KmlOverlay> _found;
     std::size_t _bytes = 0;
-    std::size_t _missing = 0;
+    std::size_t _leftOut = 0;
+    std::string _firstFault; ///< of what is left out
+    bool _toldOfAir = false;
 };
 
 } // namespace

@@ -27,7 +27,10 @@ struct KmlOverlay
     std::array<osg::Vec2d, 4> corners;
     osg::Vec4 color = {1.0f, 1.0f, 1.0f, 1.0f}; ///< multiplies the picture's colors and alpha, 0…1
     int order = 0;                              ///< drawOrder: the higher one lies on top
-    bool visible = true; ///< false if the overlay or a folder around it is switched off
+    bool visible =
+        true; ///< false if the overlay or a folder around it is switched off, or if it is of a later time
+    /// When it is there, from a TimeSpan or TimeStamp of it or of a folder around it: dates as ISO 8601 has them. Empty: no limit.
+    std::string begin, end;
     /// The size on the screen, pixels, from which on it shows, and from which on it shows fully; both 0: at any size. As
     /// ProjectiveMapping::setPixels().
     double pixelsNone = 0.0, pixelsFull = 0.0;
@@ -39,10 +42,12 @@ struct KmlOverlay
     keeps the shape that the box has on the ground, as in Google Earth. `color`, `drawOrder`, `visibility` and the limits
     minLodPixels and minFadeExtent of a Region are taken, also those of the folders around an overlay. maxLodPixels is
     not: a coarse overlay stays below the finer ones that cover it. Overlays come by their drawOrder; of equal ones
-    those of a linked file come after those of the file that links it.
+    those of a linked file come after those of the file that links it. Of overlays with times those of the earliest time are visible. All lie on the
+    ground, whatever their altitude is.
 
     **Reach.** A file's pictures and links must lie in its own folder or below (of a KMZ: within it), links followed.
-    Others are refused unless `allowOutside`. Pictures there are opened as PNG, JPEG, GIF, TIFF, BMP, WebP or JPEG 2000
+    Others are left out unless `allowOutside`, and so are pictures that are not there; a file without any other overlay is refused. Names
+    may have back slashes and letters of another case. Pictures there are opened as PNG, JPEG, GIF, TIFF, BMP, WebP or JPEG 2000
     only, since other formats name further files. No address is fetched unless `allowOutside`.
 
     **Size.** Files are read as a stream. One of more than 256 MiB (all linked ones together 1 GiB), more than 10,000 overlays

@@ -3,6 +3,7 @@
 #include <osgGeoFX/geodata/LineVectors.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/detail/FeatureTags.h>
 #include <osgGeoFX/geodata/detail/FrameRaster.h>
 
 #include <algorithm>
@@ -30,21 +31,15 @@ public:
 
     void collect(OGRLayer& layer)
     {
-        const std::vector<int> fields = styleFields(*layer.GetLayerDefn());
-        const int name = layer.GetLayerDefn()->GetFieldIndex("name");
+        const FeatureTags style = styleTags(*layer.GetLayerDefn());
+        const FeatureTags name(*layer.GetLayerDefn(), {"name"});
         forEachFeature(
             layer, _target.crs, _file,
             [&](const OGRFeature& feature, const OGRGeometry&, OGRCoordinateTransformation& toTarget)
             {
                 MapLine line;
-                if (name >= 0 && feature.IsFieldSetAndNotNull(name))
-                    line.name = feature.GetFieldAsString(name);
-                for (const int field : fields)
-                {
-                    if (!feature.IsFieldSetAndNotNull(field)) continue;
-                    line.style = feature.GetFieldAsString(field);
-                    if (!line.style.empty()) break;
-                }
+                line.name = name.of(feature);
+                line.style = style.of(feature);
                 // As it was drawn: lifts have pylons at its places and nowhere else.
                 const std::unique_ptr<OGRGeometry> geometry(feature.GetGeometryRef()->getLinearGeometry());
                 take(*geometry, line, toTarget);
@@ -52,21 +47,17 @@ public:
     }
 
 private:
-    std::vector<int> styleFields(const OGRFeatureDefn& definition) const
+    FeatureTags styleTags(const OGRFeatureDefn& definition) const
     {
-        std::vector<int> fields;
-        if (!_style.empty())
-        {
-            fields.push_back(definition.GetFieldIndex(_style.c_str()));
-            if (fields.back() < 0)
-                throw BuildError(_file + ": its layer " + std::string(definition.GetName()) +
-                                 " has no field \"" + _style + "\"; ogrinfo -so -al lists those it has.");
-            return fields;
-        }
-        for (const char* const each : {"style", "highway", "railway", "aerialway", "waterway", "route",
-                                       "boundary", "natural", "fclass", "class", "kind", "type"})
-            if (const int index = definition.GetFieldIndex(each); index >= 0) fields.push_back(index);
-        return fields;
+        if (_style.empty())
+            return FeatureTags(definition,
+                               {"style", "highway", "railway", "aerialway", "piste:type", "waterway", "route",
+                                "boundary", "natural", "fclass", "class", "kind", "type"});
+        FeatureTags named(definition, {_style});
+        if (!named.any())
+            throw BuildError(_file + ": its layer " + std::string(definition.GetName()) + " has no field \"" +
+                             _style + "\"; ogrinfo -so -al lists those it has.");
+        return named;
     }
 
     void take(const OGRGeometry& geometry, const MapLine& line, OGRCoordinateTransformation& toTarget)

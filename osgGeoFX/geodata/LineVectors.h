@@ -19,8 +19,8 @@ struct OSGGEOFXDATA_EXPORT LineVectors
     struct Options
     {
         std::string layer; ///< one layer; empty: all that have lines or areas
-        /// The field that names a line's style. Empty: of style, highway, railway, aerialway, waterway, route, boundary, natural, fclass, class,
-        /// kind and type the first one that the feature has.
+        /// The field that names a line's style, or a tag among OpenStreetMap's further ones (`other_tags`). Empty: of style, highway, railway,
+        /// aerialway, piste:type, waterway, route, boundary, natural, fclass, class, kind and type the first one that the feature has.
         std::string style;
     };
 

@@ -35,7 +35,7 @@ MappingRaster readRaster(const std::string& file, const MappingFrame& frame,
         return std::max(1, std::min(options.maxSide, static_cast<int>(std::lround(length / texel))));
     };
     // With fewer texels than all of it has, an overview is enough.
-    const int overview = options.window ? -1 : whole.overviewFor(texel / extent.texel);
+    const int overview = whole.overviewFor(texel / extent.texel);
     std::optional<FrameRaster> coarse;
     if (overview >= 0) coarse.emplace(file, options.kind, true, FrameRaster::ANY_FORMAT, overview);
     const FrameRaster& raster = coarse ? *coarse : whole;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/geodata/NameVectors.h>
 
+#include <osgGeoFX/geodata/detail/FeatureTags.h>
 #include <osgGeoFX/geodata/detail/FrameRaster.h>
 #include <osgGeoFX/geodata/detail/Lengths.h>
 
@@ -15,6 +16,7 @@
 #include <cstdlib>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace osgGeoFX
@@ -26,53 +28,47 @@ namespace
 using Places = std::vector<osg::Vec3d>;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Which fields of a layer tell what; −1: none.
+/// Which fields of a layer tell what.
 struct Fields
 {
-    int name, importance, height, style;
+    FeatureTags name, importance, height, style;
 
-    Fields(const OGRLayer& layer, const NameVectors::Options& options, const std::string& file)
+    Fields(const OGRFeatureDefn& layer, const NameVectors::Options& options, const std::string& file)
+        : name(tagsOf(layer, file, options.name, {"name", "label", "title"})),
+          importance(tagsOf(layer, file, options.importance, {"importance", "rank_score", "prominence"})),
+          height(tagsOf(layer, file, options.height, {"ele", "elevation", "height"})),
+          style(
+              tagsOf(layer, file, options.style, {"style", "natural", "place", "water", "waterway", "class"}))
     {
-        const OGRFeatureDefn& definition = *const_cast<OGRLayer&>(layer).GetLayerDefn();
-        const auto find = [&](const std::string& wanted, const std::vector<const char*>& usual)
-        {
-            if (!wanted.empty())
-            {
-                const int index = definition.GetFieldIndex(wanted.c_str());
-                if (index < 0)
-                    throw BuildError(file + ": its layer " + std::string(definition.GetName()) +
-                                     " has no field \"" + wanted + "\"; ogrinfo -so -al lists those it has.");
-                return index;
-            }
-            for (const char* const each : usual)
-                if (const int index = definition.GetFieldIndex(each); index >= 0) return index;
-            return -1;
-        };
-        name = find(options.name, {"name", "label", "title"});
-        importance = find(options.importance, {"importance", "rank_score", "prominence"});
-        height = find(options.height, {"ele", "elevation", "height"});
-        style = find(options.style, {"style", "natural", "place", "water", "waterway", "class"});
+    }
+
+private:
+    static FeatureTags tagsOf(const OGRFeatureDefn& layer, const std::string& file, const std::string& wanted,
+                              const std::vector<std::string>& usual)
+    {
+        FeatureTags tags(layer, wanted.empty() ? usual : std::vector<std::string>{wanted});
+        if (!wanted.empty() && !tags.any())
+            throw BuildError(file + ": its layer " + std::string(layer.GetName()) + " has no field \"" +
+                             wanted + "\"; ogrinfo -so -al lists those it has.");
+        return tags;
     }
 };
 
-/// A number at the beginning of a field.
-std::optional<double> numberOf(const OGRFeature& feature, int field)
+/// A number at the beginning of a text.
+std::optional<double> numberOf(const std::string& text)
 {
-    if (field < 0 || !feature.IsFieldSetAndNotNull(field)) return std::nullopt;
-    const std::string text = feature.GetFieldAsString(field);
     char* end = nullptr;
     const double number = CPLStrtod(text.c_str(), &end);
     if (end == text.c_str() || !std::isfinite(number)) return std::nullopt;
     return number;
 }
 
-double heightOf(const OGRFeature& feature, int field)
+double heightOf(const std::string& text)
 {
-    if (field < 0 || !feature.IsFieldSetAndNotNull(field)) return unknown;
-    if (const auto metres = Lengths::read(feature.GetFieldAsString(field)); metres && std::isfinite(*metres))
-        return *metres;
+    if (text.empty()) return unknown;
+    if (const auto metres = Lengths::read(text); metres && std::isfinite(*metres)) return *metres;
     // Words that are no unit, such as "müM".
-    return numberOf(feature, field).value_or(unknown);
+    return numberOf(text).value_or(unknown);
 }
 
 /// The middle of an area along its longer axis, with places where the area is at its widest: the means of slices across the axis.
@@ -219,24 +215,30 @@ private:
 };
 
 void collect(OGRLayer& layer, const NameVectors::Options& options, const OGRSpatialReference& target,
-             double metresPerUnit, bool globe, const std::string& file, std::vector<MapName>& names)
+             double metresPerUnit, bool globe, const std::string& file, std::vector<MapName>& names,
+             std::set<std::string>& others)
 {
-    const Fields fields(layer, options, file);
-    if (fields.name < 0) return;
+    const Fields fields(*layer.GetLayerDefn(), options, file);
+    if (!fields.name.any())
+    {
+        for (int i = 0; i < layer.GetLayerDefn()->GetFieldCount(); ++i)
+            if (const OGRFieldDefn& field = *layer.GetLayerDefn()->GetFieldDefn(i);
+                field.GetType() == OFTString)
+                others.insert(cleanText(field.GetNameRef()));
+        return;
+    }
     forEachFeature(
         layer, target, file,
         [&](const OGRFeature& feature, const OGRGeometry& geometry, OGRCoordinateTransformation& toTarget)
         {
-            if (!feature.IsFieldSetAndNotNull(fields.name)) return;
             MapName name;
-            name.text = feature.GetFieldAsString(fields.name);
-            if (name.text.find_first_not_of(" \t\r\n") == std::string::npos) return;
-            name.importance = numberOf(feature, fields.importance).value_or(unknown);
-            if (fields.style >= 0 && feature.IsFieldSetAndNotNull(fields.style))
-                name.style = feature.GetFieldAsString(fields.style);
+            name.text = fields.name.of(feature);
+            if (name.text.empty()) return;
+            name.importance = numberOf(fields.importance.of(feature)).value_or(unknown);
+            name.style = fields.style.of(feature);
             Shapes shapes(toTarget, metresPerUnit, globe);
             shapes.take(geometry);
-            const double height = heightOf(feature, fields.height);
+            const double height = heightOf(fields.height.of(feature));
             for (osg::Vec3d& place : shapes.points)
             {
                 if (!std::isnan(height)) place.z() = height;
@@ -256,14 +258,22 @@ void readAll(const std::string& file, const NameVectors::Options& options, const
     const VectorTarget target = vectorTargetOf(frame, file);
     const DatasetPtr dataset = openVectors(file);
     std::vector<MapName> found;
-    forEachLayer(*dataset, options.layer, file,
-                 [&](OGRLayer& layer)
-                 { collect(layer, options, target.crs, target.metresPerUnit, frame.globe, file, found); });
+    std::set<std::string> others; // fields of text in layers without names
+    forEachLayer(
+        *dataset, options.layer, file,
+        [&](OGRLayer& layer)
+        { collect(layer, options, target.crs, target.metresPerUnit, frame.globe, file, found, others); });
+    if (found.empty() && !others.empty())
+    {
+        std::string list;
+        for (const std::string& each : others)
+            list += (list.empty() ? "" : ", ") + each;
+        throw BuildError(file + ": it has no field name, label or title; give the field that has names, of " +
+                         list + ", by --label-field, or as \"nameField\" of a style file.");
+    }
     if (found.empty())
-        throw BuildError(
-            file +
-            ": it has no feature with a name and a place; name the field that has names, or check the file "
-            "with ogrinfo -al.");
+        throw BuildError(file +
+                         ": it has no feature with a name and a place; check the file with ogrinfo -al.");
     names.insert(names.end(), std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
 }
 

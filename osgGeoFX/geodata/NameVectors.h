@@ -19,8 +19,9 @@ struct OSGGEOFXDATA_EXPORT NameVectors
     struct Options
     {
         std::string layer; ///< one layer; empty: all that have names
-        /// The fields of a feature; empty: the first one that there is of name, label and title, in upper or lower case; of importance,
-        /// rank_score and prominence; of ele, elevation and height; of style, natural, place, water, waterway and class.
+        /// The fields of a feature, in upper or lower case, or tags among OpenStreetMap's further ones (`other_tags`); empty: the first one that the
+        /// feature has of name, label and title; of importance, rank_score and prominence; of ele, elevation and height; of style, natural,
+        /// place, water, waterway and class.
         std::string name, importance, height, style;
     };
 

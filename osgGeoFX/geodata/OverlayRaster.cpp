@@ -48,22 +48,40 @@ double angleBetween(const osg::Vec3d& a, const osg::Vec3d& b)
     return 2.0 * std::asin(std::min(1.0, (a - b).length() / 2.0));
 }
 
-/// `place` gives degrees for 0…1 of the picture's sides, which have so many pixels.
+/// `place` gives degrees for 0…1 of the picture's sides, which have so many pixels, or nothing beside the Earth. Empty if no part of the picture is
+/// on the Earth.
 template<typename Function>
-GroundReach reachOver(const Function& place, double columns, double rows)
+std::optional<GroundReach> reachOver(const Function& place, double columns, double rows)
 {
-    GroundReach reach;
-    reach.middle = place(osg::Vec2d(0.5, 0.5));
-    const osg::Vec3d middle = directionOf(reach.middle);
+    std::vector<osg::Vec3d> directions;
+    osg::Vec3d sum;
     for (int i = 0; i < lattice * lattice; ++i)
     {
-        reach.radius = std::max(reach.radius, angleBetween(directionOf(place(pictureAt(i))), middle));
+        const std::optional<osg::Vec2d> degrees = place(pictureAt(i));
+        if (!degrees) continue;
+        directions.push_back(directionOf(*degrees));
+        sum += directions.back();
     }
+    // Pictures of all of the Earth's disk have their middle on it; others may have the Earth in a corner.
+    osg::Vec2d center(0.5, 0.5);
+    std::optional<osg::Vec2d> middle = place(center);
+    for (int i = 0; i < lattice * lattice && !middle && !directions.empty(); ++i)
+    {
+        center = pictureAt(i);
+        const std::optional<osg::Vec2d> degrees = place(center);
+        if (degrees && angleBetween(directionOf(*degrees), sum / sum.length()) < 0.5) middle = degrees;
+    }
+    if (!middle) return std::nullopt;
+    GroundReach reach;
+    reach.middle = *middle;
+    const osg::Vec3d inward = directionOf(reach.middle);
+    for (const osg::Vec3d& direction : directions)
+        reach.radius = std::max(reach.radius, angleBetween(direction, inward));
     const double step = 1e-3;
     const auto length = [&](const osg::Vec2d& along)
     {
-        return angleBetween(directionOf(place(osg::Vec2d(0.5, 0.5) + along * step)), middle) / step *
-               earthRadius;
+        const std::optional<osg::Vec2d> there = place(center + along * step);
+        return there ? angleBetween(directionOf(*there), inward) / step * earthRadius : 2.0 * earthRadius;
     };
     reach.texel = std::min(length({1.0, 0.0}) / columns, length({0.0, 1.0}) / rows);
     reach.middle.x() = std::remainder(reach.middle.x(), 360.0);
@@ -236,7 +254,8 @@ public:
     GroundReach reach() const
     {
         const osg::Vec2d size = _raster ? _raster->size() : osg::Vec2d(plain, plain);
-        return reachOver([&](const osg::Vec2d& uv) { return _quad.place(uv); }, size.x(), size.y());
+        return *reachOver([&](const osg::Vec2d& uv) { return std::optional(_quad.place(uv)); }, size.x(),
+                          size.y());
     }
 
     OverlayRaster read(const MappingFrame& frame)
@@ -471,7 +490,11 @@ std::optional<GroundReach> OverlayRaster::reachOf(const std::string& file, std::
         FrameCrs degrees;
         degrees.definition = "EPSG:4326";
         const osg::Vec2d size = raster.size();
-        return reachOver(raster.placer(degrees), size.x(), size.y());
+        const std::optional<GroundReach> reach = reachOver(raster.placer(degrees), size.x(), size.y());
+        if (!reach)
+            raster.fail(
+                "no part of it lies on the Earth; correct its georeference with gdal_translate -a_ullr");
+        return reach;
     }
     catch (const BuildError& failure)
     {

@@ -29,7 +29,6 @@ namespace
 {
 
 constexpr double earthRadius = 6371e3; // metres
-constexpr double farthest = 60.0;      // degrees of arc, from a frame's origin
 constexpr double farthestIfNeeded = 80.0;
 constexpr std::size_t mostFrames = 7;
 constexpr std::size_t mostFramesAround = 9; ///< of three texture units each; with six of one raster
@@ -94,10 +93,7 @@ private:
         return frame;
     }
 
-    bool isTooLarge(const GroundReach& reach) const
-    {
-        return _globe && reach.radius > osg::DegreesToRadians(farthest);
-    }
+    bool isTooLarge(const GroundReach& reach) const { return _globe && reach.radius > CubeFace::leastRadius; }
 
     /// Throws BuildError where there are too many frames.
     std::size_t frameFor(const GroundReach& reach, const std::string& name)
@@ -111,7 +107,6 @@ private:
             frames.push_back(frame.origin);
             return 0;
         }
-        const double most = osg::DegreesToRadians(farthest);
         // A quarter of a texel, of floats with 24 bits.
         const double sharp = reach.texel * 4194304.0 / earthRadius;
         std::size_t nearest = 0;
@@ -121,7 +116,7 @@ private:
             const osg::Vec2d origin(osg::RadiansToDegrees(frames[i].longitude),
                                     osg::RadiansToDegrees(frames[i].latitude));
             const double distance = arc(origin, reach.middle) + reach.radius;
-            if (distance <= std::min(most, std::max(sharp, reach.radius))) return i;
+            if (distance <= std::min(CubeFace::leastRadius, std::max(sharp, reach.radius))) return i;
             if (distance >= least) continue;
             least = distance;
             nearest = i;
@@ -155,7 +150,8 @@ private:
         if (!KmlOverlays::read(_file, _options.allowOutside, found, notices, error, &files, &isNone))
             throw BuildError(error);
         const OverlayRaster::Options options{_options.maxSide, _options.allowOutside};
-        std::size_t done = 0;
+        std::size_t done = 0, leftOut = 0;
+        std::string firstFault;
         for (const KmlOverlay& each : found)
         {
             if (_texels > _options.maxTexels)
@@ -167,28 +163,48 @@ private:
                 return;
             }
             ++done;
-            const std::optional<GroundReach> reach = OverlayRaster::reachOf(each, options, error);
-            if (!reach) throw BuildError(error);
-            GroundOverlay overlay;
-            overlay.name =
-                each.name.empty() ? std::filesystem::path(each.image).filename().string() : each.name;
-            overlay.opacity = static_cast<double>(each.color.a());
-            overlay.order = each.order;
-            overlay.visible = each.visible;
-            overlay.pixelsNone = each.pixelsNone;
-            overlay.pixelsFull = each.pixelsFull;
-            const auto take =
-                [&](const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
+            const std::size_t overlaysBefore = overlays.size(), framesBefore = frames.size();
+            try
             {
-                OverlayRaster::Options how = options;
-                how.window = window;
-                const std::optional<OverlayRaster> raster = OverlayRaster::read(each, frame, how, error);
-                if (!raster) throw BuildError(error);
-                overlay.layer = raster->layer;
-                overlay.corners = raster->corners;
-            };
-            addParts(*reach, "The ground overlay \"" + each.name + "\" of " + _file, overlay, take);
+                addKml(each, options);
+            }
+            catch (const BuildError& fault)
+            {
+                overlays.erase(overlays.begin() + static_cast<std::ptrdiff_t>(overlaysBefore),
+                               overlays.end());
+                frames.resize(framesBefore);
+                if (firstFault.empty()) firstFault = fault.what();
+                constexpr std::size_t mostNotices = 20;
+                if (++leftOut > mostNotices) continue;
+                notices.push_back(std::string(fault.what()) + " The ground overlay is left out." +
+                                  (leftOut == mostNotices ? " So are others, which are not named." : ""));
+            }
         }
+        if (overlays.empty() && !firstFault.empty()) throw BuildError(firstFault);
+    }
+
+    void addKml(const KmlOverlay& each, const OverlayRaster::Options& options)
+    {
+        std::string error;
+        const std::optional<GroundReach> reach = OverlayRaster::reachOf(each, options, error);
+        if (!reach) throw BuildError(error);
+        GroundOverlay overlay;
+        overlay.name = each.name.empty() ? std::filesystem::path(each.image).filename().string() : each.name;
+        overlay.opacity = static_cast<double>(each.color.a());
+        overlay.order = each.order;
+        overlay.visible = each.visible;
+        overlay.pixelsNone = each.pixelsNone;
+        overlay.pixelsFull = each.pixelsFull;
+        const auto take = [&](const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
+        {
+            OverlayRaster::Options how = options;
+            how.window = window;
+            const std::optional<OverlayRaster> raster = OverlayRaster::read(each, frame, how, error);
+            if (!raster) throw BuildError(error);
+            overlay.layer = raster->layer;
+            overlay.corners = raster->corners;
+        };
+        addParts(*reach, "The ground overlay \"" + each.name + "\" of " + _file, overlay, take);
     }
 
     using Take = std::function<void(const MappingFrame&, const std::optional<MappingRaster::Window>&)>;
@@ -206,7 +222,10 @@ private:
         // As many texels as a face has room for.
         const double coarsest =
             2.0 * osg::WGS_84_RADIUS_EQUATOR * std::sin(osg::PI_4) / std::max(1, _options.maxSide - 8);
-        const MappingRaster::Window window = CubeFace::window(std::max(reach.texel, coarsest));
+        MappingRaster::Window window = CubeFace::window(std::max(reach.texel, coarsest));
+        // Faces lie over each other by two texels, which a coarse raster would show.
+        constexpr int leastSide = 1024;
+        window.texel = std::min(reach.texel, (window.high.x() - window.low.x()) / leastSide);
         for (const LocalOrigin& origin : CubeFace::origins())
         {
             MappingFrame frame = frameOf(frames.size());
@@ -253,7 +272,7 @@ private:
         const auto take = [&](const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
         {
             MappingRaster::Options options{std::nullopt, _options.maxSide, window};
-            if (_options.paged && !window) overlay.tiles = tilesIn(frame, options.maxSide);
+            if (_options.paged) overlay.tiles = tilesIn(frame, options.maxSide);
             const std::optional<MappingRaster> raster = MappingRaster::read(_file, frame, options, error);
             if (!raster) throw BuildError(error);
             const osg::Vec2d& low = raster->low;

@@ -4,9 +4,13 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/KmlOverlays.h>
+#include <osgGeoFX/geodata/detail/FeatureTags.h>
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
+#include <osgGeoFX/geodata/detail/IgcFlight.h>
 #include <osgGeoFX/geodata/detail/KmlFolder.h>
 #include <osgGeoFX/geodata/detail/KmlLineReader.h>
+#include <osgGeoFX/geodata/detail/LostFixes.h>
+#include <osgGeoFX/geodata/detail/Remarks.h>
 
 #include <cpl_vsi.h>
 #include <ogr_featurestyle.h>
@@ -41,8 +45,23 @@ public:
     {
         if (KmlOverlays::isKml(_file))
             readKml();
+        else if (isIgcFlight(_file))
+            _found.push_back(readIgcFlight(_file, mostRoutePlaces));
         else
             readByGdal();
+        for (RoutePath& way : _found)
+        {
+            const std::size_t all = way.places.size();
+            if (const std::size_t lost = takeOutLostFixes(way))
+                remarkOnce(
+                    _file + ": " + std::to_string(lost) + " of the " + std::to_string(all) +
+                    " places of the way \"" + way.name +
+                    "\" lie far from the others, as lost fixes of a receiver do, and are left out; take "
+                    "them out of the file, or correct them.");
+        }
+        _found.erase(std::remove_if(_found.begin(), _found.end(),
+                                    [](const RoutePath& way) { return way.places.size() < 2; }),
+                     _found.end());
         if (_found.empty())
             throw BuildError(
                 _file + ": it has no way of two places or more; name another layer, or check the file with "
@@ -123,22 +142,13 @@ private:
         std::map<GIntBig, std::string> names;
         const int name = wayLayer->GetLayerDefn()->GetFieldIndex("name");
         for (const auto& way : *wayLayer)
-            names[way->GetFID()] = name >= 0 ? way->GetFieldAsString(name) : "";
+            names[way->GetFID()] = name >= 0 ? cleanText(way->GetFieldAsString(name)) : std::string();
         const OGRFeatureDefn& fields = *pointLayer->GetLayerDefn();
         const int way = fields.GetFieldIndex(number);
         const int part = segment ? fields.GetFieldIndex(segment) : -1;
         const int height = fields.GetFieldIndex("ele");
         std::pair<GIntBig, int> present{-1, -1};
-        bool haveHeights = true;
-        const auto finish = [&]
-        {
-            if (!haveHeights && !_found.empty() && present.first >= 0)
-                for (osg::Vec3d& place : _found.back().places)
-                    place.z() = 0.0;
-            if (!_found.empty() && present.first >= 0 && haveHeights)
-                _found.back().altitude = RoutePath::ABSOLUTE;
-            if (!_found.empty() && present.first >= 0 && _found.back().places.size() < 2) _found.pop_back();
-        };
+        std::vector<Segment> segments;
         for (const auto& point : *pointLayer)
         {
             const OGRGeometry* const geometry = point->GetGeometryRef();
@@ -152,21 +162,56 @@ private:
                                                part < 0 ? 0 : point->GetFieldAsInteger(part)};
             if (here != present)
             {
-                finish();
                 present = here;
-                haveHeights = true;
-                RoutePath route;
-                route.name = names[here.first];
-                route.wayPoints = !segment;
-                _found.push_back(route);
+                segments.push_back({here.first, {}, true});
+                segments.back().path.name = names[here.first];
+                segments.back().path.wayPoints = !segment;
             }
             const bool hasHeight = height >= 0 && point->IsFieldSetAndNotNull(height) &&
                                    std::isfinite(point->GetFieldAsDouble(height));
-            haveHeights = haveHeights && hasHeight;
-            take({place.x(), place.y(), hasHeight ? point->GetFieldAsDouble(height) : 0.0}, _found.back());
+            segments.back().haveHeights = segments.back().haveHeights && hasHeight;
+            take({place.x(), place.y(), hasHeight ? point->GetFieldAsDouble(height) : 0.0},
+                 segments.back().path);
         }
-        finish();
         checkReading(errors);
+        joinLonePoints(segments);
+        for (Segment& each : segments)
+        {
+            if (each.haveHeights)
+                each.path.altitude = RoutePath::ABSOLUTE;
+            else
+                for (osg::Vec3d& place : each.path.places)
+                    place.z() = 0.0;
+            if (each.path.places.size() > 1) _found.push_back(std::move(each.path));
+        }
+    }
+
+    /// Of a way of GPX, by its number there.
+    struct Segment
+    {
+        GIntBig way;
+        RoutePath path;
+        bool haveHeights;
+    };
+
+    /// Some recorders begin a segment at each point: neighbours of one point each become one segment.
+    static void joinLonePoints(std::vector<Segment>& segments)
+    {
+        std::vector<Segment> joined;
+        bool last = false; // whether the last one is made of lone points
+        for (Segment& each : segments)
+        {
+            const bool lone = each.path.places.size() == 1;
+            if (lone && last && joined.back().way == each.way)
+            {
+                joined.back().path.places.push_back(each.path.places.front());
+                joined.back().haveHeights = joined.back().haveHeights && each.haveHeights;
+            }
+            else
+                joined.push_back(std::move(each));
+            last = lone;
+        }
+        segments = std::move(joined);
     }
 
     /// Tables of attributes have no coordinate system, and points and areas hold no lines.
@@ -187,14 +232,13 @@ private:
         OGRSpatialReference degrees;
         degrees.importFromEPSG(4326);
         const TransformationPtr toDegrees = createTransformation(gisOrder(*srs), gisOrder(degrees), _file);
-        const int name = layer.GetLayerDefn()->GetFieldIndex("name");
+        const FeatureTags name(*layer.GetLayerDefn(), {"name"});
         const GdalErrorScope errors;
         for (const auto& feature : layer)
         {
             if (!feature->GetGeometryRef()) continue;
             RoutePath route;
-            if (name >= 0 && feature->IsFieldSetAndNotNull(name))
-                route.name = feature->GetFieldAsString(name);
+            route.name = name.of(*feature);
             route.color = colorOf(*feature);
             const std::unique_ptr<OGRGeometry> lines(feature->GetGeometryRef()->getLinearGeometry());
             takeLines(*lines, route, *toDegrees);

@@ -13,13 +13,17 @@ namespace osgGeoFX
 
 /** Reads ways with their heights.
 
-    - **GPX** (by GDAL): routes, whose places are way points, and each segment of a track. If all points of one have `ele`, it is
-      ABSOLUTE, else CLAMPED.
+    - **GPX** (by GDAL): routes, whose places are way points, and each segment of a track; neighbouring segments of one point each are joined.
+      If all points of one have `ele`, it is ABSOLUTE, else CLAMPED.
+    - **IGC**, flights of gliders: one track, ABSOLUTE.
     - **KML and KMZ**: LineString and gx:Track of placemarks that are not switched off, with altitudeMode (`clampToGround`
       without one), `extrude` and the color of their LineStyle; also of files that it links within its folder, at most 1000. GDAL tells no altitudeMode of tracks, so the text is read
       as a stream, as KmlOverlays does.
     - **All else that GDAL opens**: lines. With a third coordinate they are ABSOLUTE, without CLAMPED. A field `name` is
       their name.
+
+    Lost fixes of receivers are left out, with one warning for each way: places at exactly 0, 0 far from all others, and in tracks places
+    far off to which the track jumps and from which it comes back.
 
     Thread-safe.
     @ingroup geodata */

@@ -361,10 +361,14 @@ void addLines(SurfaceData& data, const std::string& name, const std::string& fil
     OGRSpatialReference target;
     target.SetFromUserInput(crs.definition.c_str());
     Pen pen(gridOf(data, 0.0, maxSide), width, color);
-    for (OGRLayer* layer : dataset->GetLayers())
-        forEachFeature(*layer, target, file,
-                       [&](const OGRFeature&, const OGRGeometry& geometry,
-                           OGRCoordinateTransformation& toFrame) { draw(geometry, toFrame, crs, pen); });
+    forEachLayer(*dataset, {}, file,
+                 [&](OGRLayer& layer)
+                 {
+                     forEachFeature(layer, target, file,
+                                    [&](const OGRFeature&, const OGRGeometry& geometry,
+                                        OGRCoordinateTransformation& toFrame)
+                                    { draw(geometry, toFrame, crs, pen); });
+                 });
     checkAny(*pen.image, file);
     pen.image->setFileName(file);
     data.addLayer(name, SurfaceData::COLOR, pen.image);

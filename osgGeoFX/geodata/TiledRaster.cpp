@@ -3,9 +3,12 @@
 #include <osgGeoFX/geodata/TiledRaster.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/OverlayRaster.h>
+#include <osgGeoFX/geodata/detail/CubeFace.h>
 #include <osgGeoFX/geodata/detail/FrameRaster.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -43,7 +46,14 @@ public:
         auto raster = std::make_unique<FrameRaster>(_file, _wanted);
         raster->checkOverviews();
         _kind = raster->kind;
-        _extent = raster->extent(_crs);
+        if (const std::optional<double> texel = texelAroundGlobe())
+        {
+            const MappingRaster::Window window = CubeFace::window(*texel);
+            _isFace = true;
+            _extent = {window.low, window.high, *texel};
+        }
+        else
+            _extent = raster->extent(_crs);
         _idle[itself].push_back(std::move(raster));
     }
 
@@ -72,6 +82,7 @@ public:
             }
             const osg::ref_ptr<osg::Image> image =
                 raster->image(_crs, _crs.fromFrame(from), _crs.fromFrame(to), columns, rows);
+            if (_isFace) CubeFace::cut(*image, {from, to}, std::abs(_frame.origin.latitude) > 1.0);
             give(overview, std::move(raster));
             return image;
         }
@@ -87,6 +98,22 @@ protected:
 
 private:
     static constexpr int itself = -1;
+
+    /// The size of a pixel, metres, if the raster reaches around the globe and the frame is that of a sixth of it.
+    std::optional<double> texelAroundGlobe() const
+    {
+        const std::array<LocalOrigin, 6> origins = CubeFace::origins();
+        const bool isSixth = std::any_of(origins.begin(), origins.end(),
+                                         [this](const LocalOrigin& origin) {
+                                             return origin.longitude == _frame.origin.longitude &&
+                                                    origin.latitude == _frame.origin.latitude;
+                                         });
+        if (!_frame.globe || !isSixth) return std::nullopt;
+        std::string error;
+        const std::optional<GroundReach> reach = OverlayRaster::reachOf(_file, error);
+        if (!reach) throw BuildError(error);
+        return reach->radius > CubeFace::leastRadius ? std::optional(reach->texel) : std::nullopt;
+    }
 
     /// GDAL's datasets are for one thread each.
     std::unique_ptr<FrameRaster> take(int overview)
@@ -117,6 +144,7 @@ private:
     const std::optional<DataLayer::Kind> _wanted;
     DataLayer::Kind _kind = DataLayer::COLOR;
     FrameRaster::Extent _extent;
+    bool _isFace = false; ///< of a raster around the globe
     std::mutex _mutex;
     std::map<int, std::vector<std::unique_ptr<FrameRaster>>> _idle; ///< by overview
 };

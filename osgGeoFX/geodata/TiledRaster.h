@@ -13,7 +13,8 @@ namespace osgGeoFX
 {
 
 /** Any raster that GDAL opens as tiles for a PagedRaster, warped into the frame of mappings part by part. It accepts what
-    MappingRaster accepts. Coarse parts are read from the file's overviews, so it is never read whole; a file that is large and
+    MappingRaster accepts. Of a raster that reaches around the globe the tiles are a sixth, if the frame's origin is one of 0°, 90°, 180° and −90° on the
+    equator and both poles: the part that is nearest to it. Coarse parts are read from the file's overviews, so it is never read whole; a file that is large and
     has none is refused. As long as a tiled raster lives, GDAL's cache of blocks, which is the process's, has 64 MiB at most.
 
     open() may be called from any thread.

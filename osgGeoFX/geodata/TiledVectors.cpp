@@ -25,8 +25,6 @@ namespace
 {
 
 constexpr double earthRadius = 6371e3; // metres
-/// Radians of arc, from which on shapes are cut into six.
-const double farthest = osg::PI / 3.0;
 /// Of frames whose places are floats.
 constexpr double places = 4194304.0;
 constexpr double finest = 0.02; // metres
@@ -38,7 +36,7 @@ struct TreeFreer
 
 double texelOf(double radius)
 {
-    return std::max(finest, 2.0 * std::min(radius, farthest) * earthRadius / places);
+    return std::max(finest, 2.0 * std::min(radius, CubeFace::leastRadius) * earthRadius / places);
 }
 
 /// What of the Earth a face of the cube shows, with some margin.
@@ -312,7 +310,8 @@ osg::ref_ptr<RasterTiles> TiledVectors::open(const LayerSource& source, std::str
     frame.wkt = source.wkt;
     frame.origin = source.origin;
     std::optional<MappingRaster::Window> window;
-    if (source.globe && vectors->radius() > farthest) window = CubeFace::window(vectors->texel());
+    if (source.globe && vectors->radius() > CubeFace::leastRadius)
+        window = CubeFace::window(vectors->texel());
     return vectors->tiles(frame, window, error);
 }
 

@@ -72,6 +72,17 @@ std::map<std::string, LineStyle> usualLineStyles()
     for (const char* const name : {"cable_car", "gondola", "mixed_lift", "chair_lift", "drag_lift", "t-bar",
                                    "j-bar", "platter", "rope_tow", "magic_carpet", "zip_line", "lift"})
         styles[name] = lift;
+    LineStyle piste;
+    piste.color.set(0.13f, 0.36f, 0.78f, 1.0f);
+    piste.casingWidth = 0.3;
+    piste.width = 2.2;
+    piste.ground = 30.0;
+    piste.least = 0.6;
+    piste.rank = 70.0;
+    for (const char* const name : {"downhill", "snow_park", "sled", "connection", "piste"})
+        styles[name] = piste;
+    for (const char* const name : {"nordic", "skitour"})
+        styles[name] = dashed(1.4, 60.0, 30.0, 65.0, piste.color);
     LineStyle river;
     river.color.set(0.24f, 0.46f, 0.66f, 1.0f);
     river.width = 3.0;

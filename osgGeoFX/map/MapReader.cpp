@@ -34,11 +34,13 @@ MapReader::MapReader(osg::Node& node, EffectScene& scene)
     if (!_ellipsoid) _wkt = crsOfScene(node);
 }
 
-bool MapReader::readNames(const std::string& file, const std::string& layer, std::string& error)
+bool MapReader::readNames(const std::string& file, const std::string& layer, const std::string& nameField,
+                          std::string& error)
 {
     NameFile request;
     request.file = file;
     request.layer = layer;
+    request.name = nameField;
     request.globe = _ellipsoid.valid();
     request.wkt = _wkt;
     if (!request.read(error)) return false;

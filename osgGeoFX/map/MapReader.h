@@ -17,7 +17,7 @@ namespace osgGeoFX
     @code
     osgGeoFX::MapContents map;
     osgGeoFX::MapReader reader(*scene.node, *scene.effects);
-    if (!reader.readNames("peaks.gpkg", "", error) || !reader.place(map, notices, error)) …
+    if (!reader.readNames("peaks.gpkg", "", "", error) || !reader.place(map, notices, error)) …
     scene.node = map.addTo(*scene.effects, *scene.node);
     @endcode
 
@@ -29,8 +29,10 @@ public:
     /// `node`: the scene's outermost node, with all that tells its place on the Earth. Both must outlive the reader.
     MapReader(osg::Node& node, EffectScene& scene);
 
-    /// Reads the names of a file. `layer`: empty for all layers. False, with a sentence in `error`, if it cannot, or if there are none.
-    bool readNames(const std::string& file, const std::string& layer, std::string& error);
+    /// Reads the names of a file. `layer`: empty for all layers. `nameField`: as MapStyles::nameField. False, with a sentence in `error`, if it
+    /// cannot, or if there are none.
+    bool readNames(const std::string& file, const std::string& layer, const std::string& nameField,
+                   std::string& error);
     /// The same for lines. `styleField`: as MapStyles::lineField.
     bool readLines(const std::string& file, const std::string& layer, const std::string& styleField,
                    std::string& error);

@@ -159,16 +159,20 @@ void readFile(const std::string& file, MapStyles& styles)
     if (!stream) throw Fault("The style file \"" + file + "\" cannot be read; check its name.");
     const json whole = json::parse(stream, nullptr, false, true);
     if (whole.is_discarded() || !whole.is_object() ||
-        !(whole.contains("names") || whole.contains("lines") || whole.contains("contextImportance")))
+        !(whole.contains("names") || whole.contains("lines") || whole.contains("nameField") ||
+          whole.contains("lineField") || whole.contains("contextImportance")))
         throw Fault("\"" + file +
                     "\" is no style file; it must be JSON such as {\"names\": {\"peak\": {\"size\": 16}}, "
                     "\"lines\": {\"river\": {\"width\": 2}}}.");
     for (const auto& [key, value] : whole.items())
     {
-        if (key == "names" || key == "lines" || key == "lineField" || key == "contextImportance") continue;
+        if (key == "names" || key == "lines" || key == "nameField" || key == "lineField" ||
+            key == "contextImportance")
+            continue;
         std::string sentence = "\"" + file + "\": \"";
         sentence += key;
-        throw Fault(sentence + "\" is not known; there are names, lines, lineField and contextImportance.");
+        throw Fault(sentence +
+                    "\" is not known; there are names, lines, nameField, lineField and contextImportance.");
     }
     readAll(whole, file, "names",
             {"font", "size", "bold", "italic", "spacing", "color", "halo", "haloWidth", "manner", "longest",
@@ -184,11 +188,12 @@ void readFile(const std::string& file, MapStyles& styles)
             throw Fault("\"" + file + "\": \"contextImportance\" must be a number.");
         styles.contextImportance = whole.at("contextImportance").get<double>();
     }
-    if (whole.contains("lineField"))
+    for (const auto& [key, field] :
+         {std::pair("nameField", &styles.nameField), {"lineField", &styles.lineField}})
     {
-        if (!whole.at("lineField").is_string())
-            throw Fault("\"" + file + "\": \"lineField\" must be a text.");
-        styles.lineField = whole.at("lineField").get<std::string>();
+        if (!whole.contains(key)) continue;
+        if (!whole.at(key).is_string()) throw Fault("\"" + file + "\": \"" + key + "\" must be a text.");
+        *field = whole.at(key).get<std::string>();
     }
 }
 

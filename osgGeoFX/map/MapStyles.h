@@ -24,6 +24,7 @@ struct OSGGEOFXMAPS_EXPORT MapStyles
     std::map<std::string, LineStyle> lines = usualLineStyles();
     /// The least importance of names in the context of a bend (NameSet::setContextImportance()); −∞: all names.
     double contextImportance = -HUGE_VAL;
+    std::string nameField; ///< the field of a name file that has the names; empty: the usual ones
     std::string lineField; ///< the field of a line file that names the style; empty: the usual ones
 
     /// Changes the styles as a style file says. False, with a sentence in `error`, if it cannot be read or says what is not known; then

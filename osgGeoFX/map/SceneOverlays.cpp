@@ -6,6 +6,8 @@
 #include <osgGeoFX/map/detail/SceneCrs.h>
 #include <osgGeoFX/panorama/TerrainRelief.h>
 
+#include <osg/BoundingSphere>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -13,6 +15,28 @@
 
 namespace osgGeoFX
 {
+
+namespace
+{
+
+/// Around the rectangle of an overlay in the frame of an origin, world coordinates.
+osg::BoundingSphered sphereOf(const GroundOverlay& overlay, const LocalOrigin& origin,
+                              const osg::EllipsoidModel* ellipsoid)
+{
+    const osg::Matrixd toWorld = origin.toWorld(ellipsoid);
+    osg::BoundingSphered sphere;
+    for (const osg::Vec2d& corner : overlay.corners)
+    {
+        // The ground falls away from the frame's plane.
+        const double radius = osg::WGS_84_RADIUS_EQUATOR;
+        const double down =
+            ellipsoid ? std::sqrt(std::max(radius * radius - corner.length2(), 0.0)) - radius : 0.0;
+        sphere.expandBy(osg::Vec3d(corner, down) * toWorld);
+    }
+    return sphere;
+}
+
+} // namespace
 
 SceneOverlays::SceneOverlays(osg::Node& node, EffectScene& scene) : _node(node), _scene(&scene)
 {
@@ -34,8 +58,19 @@ bool SceneOverlays::add(const std::string& file, const Options& options, std::ve
     request.wkt = _wkt;
     for (const osg::ref_ptr<ProjectiveMappings>& effect : _effects)
         request.frames.push_back(effect->getLocalOrigin());
+    const osg::BoundingSphere bound = _node.getBound();
+    const osg::BoundingSphered ground(bound.center(), static_cast<double>(bound.radius()));
     if (!request.read(error)) return false;
 
+    const osg::ref_ptr<const osg::EllipsoidModel> ellipsoid = _scene->ground().ellipsoid;
+    const bool isBeside = std::none_of(
+        request.overlays.begin(), request.overlays.end(),
+        [&](const GroundOverlay& overlay)
+        { return ground.intersects(sphereOf(overlay, request.frames[overlay.frame], ellipsoid)); });
+    if (isBeside && ground.valid())
+        notices.push_back(file +
+                          ": it lies beside the terrain, so that nothing of it is seen; check its coordinate "
+                          "reference system, or whether it is the right file.");
     giveHeights(request);
     // The parts of one file share its memory.
     const auto tiled = std::count_if(request.overlays.begin(), request.overlays.end(),

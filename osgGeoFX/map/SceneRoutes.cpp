@@ -77,7 +77,8 @@ private:
 };
 
 SceneRoutes::SceneRoutes(osg::Node& node, EffectScene& scene)
-    : _node(node), _scene(&scene), _ellipsoid(scene.ground().ellipsoid)
+    : _node(node), _scene(&scene), _groundExtent(2.0 * static_cast<double>(node.getBound().radius())),
+      _ellipsoid(scene.ground().ellipsoid)
 {
     _reference = Georeference::create(&node, _referenceError);
 }
@@ -170,9 +171,11 @@ bool SceneRoutes::add(const RoutePath& route, const Options& options, std::strin
 {
     Way way;
     if (!placeOf(route, way, error)) return false;
-    if (options.onGround && !addMappings(route, way, options, error)) return false;
+    Options limited = options;
+    if (!(limited.look.groundExtent > 0.0)) limited.look.groundExtent = _groundExtent;
+    if (options.onGround && !addMappings(route, way, limited, error)) return false;
     if (route.altitude == RoutePath::CLAMPED || !options.ribbons) return true;
-    return addRibbons(route, options, error);
+    return addRibbons(route, limited, error);
 }
 
 bool SceneRoutes::addMappings(const RoutePath& route, const Way& way, const Options& options,

@@ -67,6 +67,7 @@ private:
     class Heights;
     osg::Node& _node;
     osg::ref_ptr<EffectScene> _scene;
+    const double _groundExtent;        ///< metres; negative where there is no ground
     std::shared_ptr<Heights> _heights; ///< of the ground; null until they are needed
     osg::ref_ptr<const osg::EllipsoidModel> _ellipsoid;
     osg::ref_ptr<Georeference> _reference;

@@ -69,7 +69,8 @@ public:
             box.expandBy(world);
         }
         const double extent = 2.0 * box.radius();
-        _width = _look.width > 0.0 ? _look.width : std::max(4.0, extent / 200.0);
+        const double seen = _look.groundExtent > 0.0 ? std::min(extent, _look.groundExtent) : extent;
+        _width = _look.width > 0.0 ? _look.width : std::max(4.0, seen / 200.0);
         const double wanted = _look.step > 0.0 ? _look.step : std::max(extent / 100.0, 1.0);
         const double step = std::max(wanted, extent / static_cast<double>(mostPlaces));
         osg::Vec3d before;
@@ -267,6 +268,7 @@ std::vector<osg::ref_ptr<osg::Node>> PathRibbon::nodesOf(const RoutePath& path, 
     ribbon.ground = ground;
     ribbon.color = look.style.color;
     ribbon.width = look.width;
+    ribbon.groundExtent = look.groundExtent;
     std::vector<osg::ref_ptr<osg::Node>> nodes;
     for (const Shape each : {TUBE, CURTAIN})
     {

@@ -38,7 +38,9 @@ struct OSGGEOFX_EXPORT PathRibbon
         TUBE     ///< round about the way
     };
     Shape shape = RIBBON;
-    double width = 0.0; ///< of a ribbon or tube, metres; 0: a 200th of the way's extent, 4 m at least
+    /// Of a ribbon or tube, metres; 0: a 200th of the way's extent, or of the ground's if that is smaller, 4 m at least.
+    double width = 0.0;
+    double groundExtent = 0.0; ///< RoutePath::Look's
     /// A ribbon or tube is never narrower than so many pixels, 0…10, as far as the driver draws lines so wide; 0: from afar it fades
     /// into single pixels.
     double leastPixels = 2.0;

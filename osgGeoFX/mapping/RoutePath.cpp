@@ -147,7 +147,9 @@ bool RoutePath::showOn(ProjectiveMappings& effect, const osg::EllipsoidModel* el
     for (const osg::Vec2d& place : way)
         box.expandBy(osg::Vec3d(place, 0.0));
     RouteMapping::Style style = look.style;
-    const double width = look.width > 0.0 ? look.width : std::max(8.0, box.radius() / 60.0);
+    const double extent =
+        look.groundExtent > 0.0 ? std::min(2.0 * box.radius(), look.groundExtent) : 2.0 * box.radius();
+    const double width = look.width > 0.0 ? look.width : std::max(8.0, extent / 120.0);
     const double scale = style.halfWidth > 0.0 ? width / 2.0 / style.halfWidth : 1.0;
     style.halfWidth *= scale;
     style.casing *= scale;

@@ -46,9 +46,10 @@ struct OSGGEOFX_EXPORT RoutePath
     /// How showOn() draws a way.
     struct Look
     {
-        double width =
-            0.0; ///< of the line without its outline, metres; 0: a 120th of the way's extent, 8 m at least
-        int order = 0; ///< RouteMapping's
+        /// Of the line without its outline, metres; 0: a 120th of the way's extent, or of the ground's if that is smaller, 8 m at least.
+        double width = 0.0;
+        double groundExtent = 0.0; ///< largest diameter of the ground that shows the way, metres; 0: unknown
+        int order = 0;             ///< RouteMapping's
         /// Enlarged so that the line has the width. The way's own color goes before its color. By default the surroundings keep
         /// their colors.
         RouteMapping::Style style = plainStyle();

@@ -11,15 +11,19 @@
 #include <OpenImageIO/imageio.h>
 #include <lcms2.h>
 #include <osg/Group>
+#include <osg/Vec2d>
 
 #include <algorithm>
+#include <cctype>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -438,6 +442,43 @@ void PicturePrint::Parts::write(const std::string& file)
     tiles.remove();
 }
 
+namespace
+{
+
+/// A sheet of paper by its name, millimetres; landscape, or upright with "-portrait" behind the name. Empty: no known name.
+std::optional<osg::Vec2d> sheetOf(const std::string& paper)
+{
+    const std::size_t dash = paper.find('-');
+    const bool upright = dash != std::string::npos;
+    if (upright && paper.substr(dash) != "-portrait") return std::nullopt;
+    std::string name = paper.substr(0, dash);
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char each) { return static_cast<char>(std::tolower(each)); });
+    // ANSI/ASME Y14.1.
+    static const std::map<std::string, osg::Vec2d> american = {
+        {"letter", {279.4, 215.9}}, {"legal", {355.6, 215.9}}, {"tabloid", {431.8, 279.4}}};
+    osg::Vec2d sheet;
+    if (const auto found = american.find(name); found != american.end())
+        sheet = found->second;
+    else if (name.size() == 2 && name[0] == 'a' && name[1] >= '0' && name[1] <= '6')
+    {
+        // ISO 216: A0 has a square metre, and sides of 1 to the root of 2; the others are halves, rounded down to a millimetre.
+        int wide = 1189, high = 841;
+        for (int i = name[1] - '0'; i > 0; --i)
+        {
+            const int half = wide / 2;
+            wide = high;
+            high = half;
+        }
+        sheet.set(wide, high);
+    }
+    else
+        return std::nullopt;
+    return upright ? osg::Vec2d(sheet.y(), sheet.x()) : sheet;
+}
+
+} // namespace
+
 std::optional<PrintSize> PrintSize::parse(const std::string& text, std::string& error)
 {
     PrintSize size;
@@ -453,27 +494,17 @@ std::optional<PrintSize> PrintSize::parse(const std::string& text, std::string& 
             size.dpi = -1.0;
     }
     double millimetresWide = 0.0, millimetresHigh = 0.0;
-    int used = 0, number = 0;
+    int used = 0;
     char unit[3] = "";
     const auto whole = [&]
     {
         return used > 0 && static_cast<std::size_t>(used) == paper.size();
     };
     bool known = size.dpi >= 0.0;
-    if (known && paper.size() > 1 && paper[0] == 'A' &&
-        std::sscanf(paper.c_str(), "A%1d%n", &number, &used) == 1 && number <= 6 &&
-        (whole() || paper.substr(static_cast<std::size_t>(used)) == "-portrait"))
+    if (const std::optional<osg::Vec2d> sheet = known ? sheetOf(paper) : std::nullopt)
     {
-        // ISO 216: A0 has a square metre, and sides of 1 to the root of 2; the others are halves, rounded down to a millimetre.
-        int wide = 1189, high = 841;
-        for (int i = 0; i < number; ++i)
-        {
-            const int half = wide / 2;
-            wide = high;
-            high = half;
-        }
-        millimetresWide = whole() ? wide : high;
-        millimetresHigh = whole() ? high : wide;
+        millimetresWide = sheet->x();
+        millimetresHigh = sheet->y();
     }
     else if (known &&
              std::sscanf(paper.c_str(), "%lfx%lf%2[cmin]%n", &millimetresWide, &millimetresHigh, unit,
@@ -505,7 +536,9 @@ std::optional<PrintSize> PrintSize::parse(const std::string& text, std::string& 
     }
     if (!known)
     {
-        error = text + ": write a size such as 1600x900, A1@300dpi, A3-portrait@300dpi or 90x60cm@200dpi.";
+        error = text +
+                ": write a size such as 1600x900, A1@300dpi, A3-portrait@300dpi, Letter, Legal, Tabloid or "
+                "90x60cm@200dpi.";
         return std::nullopt;
     }
     const int shorter = std::min(size.width, size.height), longer = std::max(size.width, size.height);

@@ -28,7 +28,7 @@ struct OSGGEOFXMAPS_EXPORT PrintSize
     double dpi = 0.0; ///< pixels for each inch; 0: not said
 
     /** Reads "1600x900", "1600x900@300dpi", "A1@300dpi", "A1-portrait@300dpi" (the usual one is landscape), "90x60cm@200dpi" or
-        "36x24in@300dpi". A0 to A6; paper without a resolution gets 300. Empty, with a sentence in `error` that tells what can be had, if it is none of these, or
+        "36x24in@300dpi". A0 to A6, Letter, Legal and Tabloid, in any case; paper without a resolution gets 300. Empty, with a sentence in `error` that tells what can be had, if it is none of these, or
         has a side of no pixel or of more than 200,000. */
     static std::optional<PrintSize> parse(const std::string& text, std::string& error);
 };

@@ -27,7 +27,6 @@ namespace
 
 constexpr double pointsPerInch = 72.0;
 /// Sides of Cairo's surfaces.
-constexpr double largestSide = 32767.0;
 
 std::string hexOf(const osg::Vec4& color)
 {
@@ -325,11 +324,11 @@ bool PictureVectors::writeSvg(const std::string& file, const std::string& pictur
 bool PictureVectors::writePdf(const std::string& file, const std::string& picture, double dpi,
                               const std::string& title, std::string& error) const
 {
-    if (width > largestSide || height > largestSide)
+    if (width > largestPdfSide || height > largestPdfSide)
     {
-        error = "\"" + file +
-                "\" cannot be written: pages of a PDF have up to 32767 pixels on a side; take fewer for each "
-                "inch, or write a TIFF.";
+        error = "\"" + file + "\" cannot be written: pages of a PDF have up to " +
+                std::to_string(largestPdfSide) +
+                " pixels on a side; take fewer for each inch, or write a TIFF.";
         return false;
     }
     std::ifstream stream(picture, std::ios::binary | std::ios::ate);
@@ -396,7 +395,9 @@ bool PictureVectors::writeGeoJson(const std::string& file, std::string& error) c
     }
     Unfinished unfinished(file);
     std::ofstream stream(unfinished.path());
-    stream << nlohmann::json{{"type", "FeatureCollection"}, {"features", features}}.dump(1) << '\n';
+    stream << nlohmann::json{{"type", "FeatureCollection"}, {"features", features}}.dump(
+                  1, ' ', false, nlohmann::json::error_handler_t::replace)
+           << '\n';
     stream.close();
     return unfinished.finish(stream.good(), error);
 }

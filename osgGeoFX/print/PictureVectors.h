@@ -27,8 +27,10 @@ struct OSGGEOFXMAPS_EXPORT PictureVectors
     /// sentence in `error`, if it cannot be written.
     bool writeSvg(const std::string& file, const std::string& picture, std::string& error) const;
 
+    static constexpr int largestPdfSide = 32767; ///< pixels
+
     /** Writes a PDF file of one page: the picture, and over it lines and names as vectors, with text that can be searched. `picture`: a JPEG file
-        of this size, which becomes a part of the PDF as it is; sides of up to 32,767 pixels. `dpi`: pixels for each inch of the paper,
+        of this size, which becomes a part of the PDF as it is; sides of up to `largestPdfSide`. `dpi`: pixels for each inch of the paper,
         > 0. `title`: for the document's metadata. False, with a sentence in `error`, if it cannot. */
     bool writePdf(const std::string& file, const std::string& picture, double dpi, const std::string& title,
                   std::string& error) const;

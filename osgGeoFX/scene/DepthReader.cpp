@@ -194,8 +194,10 @@ DepthReader::DepthReader() : _shared(std::make_unique<Shared>())
 {
     setCullingActive(false);
     setUseDisplayList(false);
-    // When all else of the stage has been drawn.
-    getOrCreateStateSet()->setRenderBinDetails(900000, "RenderBin");
+    // When all else of the stage has been drawn, whatever bin the reader's parents are in.
+    getOrCreateStateSet()->setRenderBinDetails(900000, "RenderBin",
+                                               osg::StateSet::PROTECTED_RENDERBIN_DETAILS);
+    getStateSet()->setNestRenderBins(false);
 }
 
 DepthReader::~DepthReader() = default;

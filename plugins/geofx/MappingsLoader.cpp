@@ -268,19 +268,20 @@ private:
             setOrigin(_ellipsoid ? degrees : osg::Vec2d(world.x(), world.y()));
             _hasOrigin = true;
             std::string fault;
+            RoutePath::Look look = route.look;
+            look.groundExtent = 2.0 * static_cast<double>(_terrain.node().getBound().radius());
             const osg::ref_ptr<Georeference> ground = _ellipsoid ? nullptr : _terrain.reference(fault);
-            if (!path.showOn(_effect, _ellipsoid, ground, route.look, fault)) fail(route.place, fault);
+            if (!path.showOn(_effect, _ellipsoid, ground, look, fault)) fail(route.place, fault);
             if (path.altitude == RoutePath::CLAMPED || !route.inAir) continue;
             if (path.altitude == RoutePath::ABOVE_GROUND)
             {
-                loadWayInAir(route.place, path, route.look, _node);
+                loadWayInAir(route.place, path, look, _node);
                 continue;
             }
             std::string error;
             const osg::ref_ptr<Georeference> reference = _terrain.reference(error);
             if (!reference) fail(route.place, error);
-            for (const osg::ref_ptr<osg::Node>& ribbon :
-                 PathRibbon::nodesOf(path, route.look, *reference, error))
+            for (const osg::ref_ptr<osg::Node>& ribbon : PathRibbon::nodesOf(path, look, *reference, error))
                 _node.addChild(ribbon);
             if (!error.empty()) fail(route.place, error);
         }

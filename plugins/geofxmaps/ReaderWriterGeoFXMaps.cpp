@@ -69,7 +69,8 @@ private:
         for (const SceneMap::Vectors& names : map.names)
         {
             request.fault = names.file.place;
-            if (!reader.readNames(names.file.path, names.layer, error)) return false;
+            if (!reader.readNames(names.file.path, names.layer, contents.styles.nameField, error))
+                return false;
         }
         for (const SceneMap::Vectors& lines : map.lines)
         {

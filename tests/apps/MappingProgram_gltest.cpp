@@ -293,6 +293,18 @@ TEST_F(MappingProgram, VectorDataAreInThePicture)
     EXPECT_NEAR(scene("file=\"both.geojson\" style=\"point.sld\"").count, point.count, 3);
 }
 
+TEST_F(MappingProgram, WhatLiesElsewhereIsTold)
+{
+    const ProgramResult result =
+        run({"--mapping", writeRelief(_folder / "far.tif", 4, 4, 20.0, 45.0, 0.001)});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_NE(result.standardError.find("far.tif: it lies beside the terrain"), std::string::npos)
+        << result.standardError;
+    // Its corner lies on the ground.
+    const ProgramResult near = run({"--mapping", writeRelief(_folder / "near.tif", 4, 4, 7.0, 45.0, 0.5)});
+    EXPECT_EQ(near.standardError, "");
+}
+
 TEST_F(MappingProgram, WhatCannotBeShownIsToldInASentence)
 {
     expectRefusal({"--route", "none.gpx"}, "none.gpx: ");

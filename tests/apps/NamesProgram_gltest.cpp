@@ -140,6 +140,13 @@ TEST_F(NamesProgram, FaultsAreSentences)
     write("style.json", "{");
     EXPECT_NE(faultOf({"--labels", "names.geojson", "--style", "style.json"}).find("is no style file"),
               std::string::npos);
+    write("style.json", R"({"nameField": 3})");
+    EXPECT_NE(
+        faultOf({"--labels", "names.geojson", "--style", "style.json"}).find("\"nameField\" must be a text"),
+        std::string::npos);
+    EXPECT_NE(faultOf({"--label-field", "nom"}).find("give some with --labels"), std::string::npos);
+    EXPECT_NE(faultOf({"--labels", "names.geojson", "--label-field", "nom"}).find("no field \"nom\""),
+              std::string::npos);
     write("font.ttf", "no font");
     EXPECT_NE(faultOf({"--labels", "names.geojson", "--font", "font.ttf"}).find("is not a font"),
               std::string::npos);

@@ -76,6 +76,24 @@ TEST_F(LineVectorsTest, EachFeatureNamesItsStyleInItsOwnField)
     EXPECT_EQ(named[0].style, "steep");
 }
 
+TEST_F(LineVectorsTest, TagsOfOpenStreetMapCount)
+{
+    const std::string file = (_folder.path() / "lines.csv").string();
+    std::ofstream(file) << R"csv(WKT,highway,waterway,other_tags
+"LINESTRING (7.6 45.9,7.7 45.95)",,,"""piste:type""=>""downhill"",""piste:difficulty""=>""easy"""
+"LINESTRING (7.6 45.9,7.7 45.95)",,stream,
+"LINESTRING (7.6 45.9,7.7 45.95)",,,"""railway""=>""rail"""
+)csv";
+    const std::vector<MapLine> lines = readAll(file);
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_EQ(lines[0].style, "downhill");
+    EXPECT_EQ(lines[1].style, "stream");
+    EXPECT_EQ(lines[2].style, "rail");
+    LineVectors::Options options;
+    options.style = "piste:difficulty";
+    EXPECT_EQ(readAll(file, options)[0].style, "easy");
+}
+
 TEST_F(LineVectorsTest, AllGeometriesThatHaveLines)
 {
     const std::vector<MapLine> lines = readAll(

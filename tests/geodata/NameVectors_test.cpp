@@ -87,6 +87,99 @@ TEST_F(NameVectorsTest, PointsWithTheirFields)
     EXPECT_TRUE(std::isnan(names[4].places[0].z()));
 }
 
+// GDAL's layout of OpenStreetMap: most tags are in one column.
+TEST_F(NameVectorsTest, TagsOfOpenStreetMapCount)
+{
+    const std::string file = write("points.csv", R"csv(WKT,osm_id,name,place,other_tags
+POINT (7.66 45.98),1,Matterhorn,,"""natural""=>""peak"",""ele""=>""4478"",""alt_name""=>""Mont \""Cervin\""
+"""
+POINT (7.75 46.02),2,Zermatt,village,"""ele""=>""1,608 m"""
+POINT (7.7 46),3,,,"""natural""=>""peak"",""name:de""=>""Horn"""
+)csv");
+    const std::vector<MapName> names = readAll(file);
+    ASSERT_EQ(names.size(), 2u);
+    EXPECT_EQ(names[0].style, "peak");
+    EXPECT_EQ(names[0].places[0].z(), 4478.0);
+    EXPECT_EQ(names[1].style, "village");
+    EXPECT_EQ(names[1].places[0].z(), 1608.0);
+    NameVectors::Options options;
+    options.name = "alt_name";
+    const std::vector<MapName> others = readAll(file, options);
+    ASSERT_EQ(others.size(), 1u);
+    EXPECT_EQ(others[0].text, "Mont \"Cervin\" ") << "a line break is a space";
+    options.name = "name:de";
+    EXPECT_EQ(readAll(file, options)[0].text, "Horn");
+}
+
+TEST_F(NameVectorsTest, TheFirstValueTellsTheKindAndNotTheFirstColumn)
+{
+    const std::vector<MapName> names =
+        readAll(collection(feature(R"("name":"Zermatt","natural":"","place":"village")", point) + "," +
+                           feature(R"("name":"Matterhorn","natural":"peak","place":null)", point)));
+    ASSERT_EQ(names.size(), 2u);
+    EXPECT_EQ(names[0].style, "village");
+    EXPECT_EQ(names[1].style, "peak");
+}
+
+TEST_F(NameVectorsTest, CsvHasItsPlacesInColumns)
+{
+    for (const char* const columns : {"longitude,latitude", "Lon,Lat", "X,Y"})
+    {
+        SCOPED_TRACE(columns);
+        const std::vector<MapName> names = readAll(
+            write("places.csv", "name," + std::string(columns) + ",ele\nA,7.5,46.5,1200\nB,7.6,46.4,\n"));
+        ASSERT_EQ(names.size(), 2u);
+        EXPECT_EQ(names[0].places[0], osg::Vec3d(7.5, 46.5, 1200.0));
+    }
+    const std::vector<MapName> names = readAll(write("semicolons.csv", "WKT;name\nPOINT(7.5 46.5);A\n"));
+    ASSERT_EQ(names.size(), 1u);
+    EXPECT_EQ(names[0].places[0].y(), 46.5);
+    EXPECT_NE(faultOf(write("none.csv", "name,where\nA,here\n")).find("no columns of places"),
+              std::string::npos);
+    EXPECT_NE(
+        faultOf(write("metres.csv", "name,x,y\nA,600000,200000\n")).find("no coordinate reference system"),
+        std::string::npos);
+}
+
+TEST_F(NameVectorsTest, TextOfOldFilesBecomesUtf8)
+{
+    const std::string file = write(
+        "old.csv", "name,lon,lat\nZ\xfcrich\x80,8.5,47.4\n\"a\x01\nb\tc\",8.6,47.4\nK\xc3\xb6ln,8.7,47.4\n");
+    const std::vector<MapName> names = readAll(file);
+    ASSERT_EQ(names.size(), 3u);
+    EXPECT_EQ(names[0].text, "Zürich€");
+    EXPECT_EQ(names[1].text, "a b c");
+    EXPECT_EQ(names[2].text, "Köln");
+}
+
+// QGIS keeps styles in a GeoPackage as a table without places.
+TEST_F(NameVectorsTest, TablesWithoutPlacesAreNoLayers)
+{
+    GDALAllRegister();
+    const std::string file = (_folder.path() / "project.gpkg").string();
+    GDALDataset* const dataset =
+        GetGDALDriverManager()->GetDriverByName("GPKG")->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr);
+    OGRSpatialReference degrees;
+    degrees.importFromEPSG(4326);
+    for (const bool table : {true, false})
+    {
+        OGRLayer* const layer =
+            dataset->CreateLayer(table ? "layer_styles" : "peaks", table ? nullptr : &degrees,
+                                 table ? wkbNone : wkbPoint, nullptr);
+        OGRFieldDefn name("name", OFTString);
+        layer->CreateField(&name);
+        OGRFeature each(layer->GetLayerDefn());
+        each.SetField("name", "A");
+        if (!table) each.SetGeometryDirectly(new OGRPoint(7.5, 46.5));
+        EXPECT_EQ(layer->CreateFeature(&each), OGRERR_NONE);
+    }
+    GDALClose(dataset);
+    EXPECT_EQ(readAll(file).size(), 1u);
+    NameVectors::Options options;
+    options.layer = "layer_styles";
+    EXPECT_NE(faultOf(file, options).find("is a table without places"), std::string::npos);
+}
+
 // An area's name runs along its middle: here a lake that is bent like a banana.
 TEST_F(NameVectorsTest, LinesAndAreasAreCurves)
 {
@@ -183,7 +276,9 @@ TEST_F(NameVectorsTest, FaultsAreSentencesWithTheRemedy)
     EXPECT_NE(faultOf((_folder.path() / "none.gpkg").string()).find("none.gpkg"), std::string::npos);
     EXPECT_NE(faultOf(write("text.csv", "a,b\n1,2\n")).find("text.csv"), std::string::npos);
     const std::string file = collection(feature(R"("title2":"x")", point));
-    EXPECT_NE(faultOf(file).find("ogrinfo"), std::string::npos);
+    EXPECT_NE(faultOf(file).find("of title2, by --label-field"), std::string::npos);
+    EXPECT_NE(faultOf(collection(feature(R"("name":null)", point))).find("ogrinfo"), std::string::npos);
+    collection(feature(R"("title2":"x")", point));
     NameVectors::Options options;
     options.name = "nom";
     EXPECT_NE(faultOf(file, options).find("no field \"nom\""), std::string::npos);

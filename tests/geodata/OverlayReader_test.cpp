@@ -3,6 +3,7 @@
 //
 // Rasters of files in the frames of mappings: where their texels lie, which frames they get, and what is refused. Where things must
 // lie, PROJ says. GDAL writes the pictures and archives.
+#include <osgGeoFX/geodata/OverlayRaster.h>
 #include <osgGeoFX/geodata/OverlayReader.h>
 #include <tools/GeofxPlugins.h>
 #include <tools/KmlFiles.h>
@@ -19,7 +20,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 #include <sys/resource.h>
 
 using namespace osgGeoFX;
@@ -434,7 +439,7 @@ TEST_F(OverlayReaderTest, AWmtsServiceIsReadByItsCapabilities)
 TEST_F(OverlayReaderTest, WhatIsNoPictureIsRefused)
 {
     EXPECT_TRUE(contains(faultOf(archive(groundOverlay("files/none.png", latLonBox(7.0, 45.0, 8.0, 46.0)))),
-                         "over.kmz/files/none.png: it is not there"));
+                         "over.kmz/doc.kml:2: \"files/none.png\" is not there"));
     EXPECT_TRUE(contains(faultOf((_folder / "none.tif").string()), "none.tif"));
     // A format that names further files.
     _folder.write(
@@ -581,6 +586,152 @@ TEST_F(OverlayReaderTest, ARasterAroundTheGlobeMayBeOfFewTexels)
     options.maxSide = 8;
     EXPECT_TRUE(
         read(archive(groundOverlay("files/ramp.png", latLonBox(-180.0, -90.0, 180.0, 90.0))), options));
+}
+
+namespace
+{
+
+/// Places all over the globe, degrees.
+std::vector<osg::Vec2d> allOver(int count)
+{
+    std::vector<osg::Vec2d> places;
+    for (int i = 0; i < count; ++i)
+        places.emplace_back(std::remainder(137.507764 * i, 360.0),
+                            osg::RadiansToDegrees(std::asin(1.0 - (2.0 * i + 1.0) / count)));
+    return places;
+}
+
+/// Where a place lies in an overlay's frame; empty on the far side of the globe.
+std::optional<osg::Vec2d> placedIn(const OverlayReader& reader, const GroundOverlay& overlay,
+                                   const osg::Vec2d& degrees)
+{
+    const LocalOrigin& origin = reader.frames[overlay.frame];
+    const double east = osg::DegreesToRadians(degrees.x()) - origin.longitude,
+                 north = osg::DegreesToRadians(degrees.y());
+    if (std::sin(north) * std::sin(origin.latitude) +
+            std::cos(north) * std::cos(origin.latitude) * std::cos(east) <
+        0.3)
+        return std::nullopt;
+    std::string error;
+    static std::map<std::pair<double, double>, std::function<std::optional<osg::Vec2d>(const osg::Vec2d&)>>
+        placers;
+    auto& placer = placers[{origin.longitude, origin.latitude}];
+    MappingFrame frame;
+    frame.origin = origin;
+    if (!placer) placer = OverlayRaster::placer(frame, "test");
+    return placer(degrees);
+}
+
+float valueAt(const GroundOverlay& overlay, const osg::Vec2d& place)
+{
+    const osg::Image& image = *overlay.layer->getImage();
+    const osg::Vec2d low = overlay.corners[0], size = overlay.corners[2] - low;
+    const double u = (place.x() - low.x()) / size.x(), v = (place.y() - low.y()) / size.y();
+    if (!(u >= 0.0 && u < 1.0 && v >= 0.0 && v < 1.0)) return std::numeric_limits<float>::quiet_NaN();
+    return *reinterpret_cast<const float*>(
+        image.data(static_cast<unsigned int>(u * image.s()), static_cast<unsigned int>(v * image.t())));
+}
+
+} // namespace
+
+// Grids of climate and weather models: the first and the last row of cells lie half beyond the poles.
+TEST_F(OverlayReaderTest, GridsCentredOnThePolesReachThem)
+{
+    for (const double west : {-0.5, -180.5})
+    {
+        SCOPED_TRACE(west);
+        _reader = OverlayReader();
+        TestRaster grid(360, 181);
+        grid.placed(west, 90.5, 1.0, 1.0).crs("EPSG:4326").fill([](int, int row, int) { return 90.0 - row; });
+        ASSERT_TRUE(read(grid.write(_folder / "grid.tif")));
+        ASSERT_EQ(_reader.overlays.size(), 6u);
+        EXPECT_NEAR(_reader.overlays[0].lowest, -90.0, 0.5);
+        EXPECT_NEAR(_reader.overlays[0].highest, 90.0, 0.5);
+        int parts = 0;
+        constexpr int count = 2000;
+        for (const osg::Vec2d& degrees : allOver(count))
+        {
+            int here = 0;
+            for (const GroundOverlay& overlay : _reader.overlays)
+            {
+                const std::optional<osg::Vec2d> place = placedIn(_reader, overlay, degrees);
+                const float value =
+                    place ? valueAt(overlay, *place) : std::numeric_limits<float>::quiet_NaN();
+                if (std::isnan(value)) continue;
+                ++here;
+                EXPECT_NEAR(value, degrees.y(), 0.3) << degrees.x() << ", " << degrees.y();
+            }
+            EXPECT_GE(here, 1) << degrees.x() << ", " << degrees.y();
+            parts += here;
+        }
+        EXPECT_LT(parts, 1.02 * count) << "a part of the globe is drawn twice";
+    }
+}
+
+// A map of the world is paged as other large rasters are, by its overviews.
+TEST_F(OverlayReaderTest, ALargeMapOfTheWorldHasTiles)
+{
+    constexpr int columns = 8192, rows = 4096;
+    TestRaster world(columns, rows, 3, GDT_Byte);
+    world.placed(-180.0, 90.0, 360.0 / columns, 180.0 / rows).crs("EPSG:4326");
+    world.fill(
+        [](int column, int row, int band) {
+            return band == 0 ? column * 255.0 / columns : band == 1 ? row * 255.0 / rows : column % 2 * 255.0;
+        });
+    const std::string file = world.write(_folder / "world.tif", {"TILED=YES", "COMPRESS=DEFLATE"});
+    {
+        const std::unique_ptr<GDALDataset> dataset(
+            GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+        std::array<int, 3> factors{2, 4, 8};
+        ASSERT_EQ(dataset->BuildOverviews("AVERAGE", 3, factors.data(), 0, nullptr, nullptr, nullptr),
+                  CE_None);
+    }
+    OverlayReader::Options options;
+    options.paged = true;
+    options.maxSide = 1024;
+    ASSERT_TRUE(read(file, options));
+    EXPECT_TRUE(_reader.notices.empty());
+    ASSERT_EQ(_reader.overlays.size(), 6u);
+    for (const GroundOverlay& overlay : _reader.overlays)
+    {
+        ASSERT_TRUE(overlay.tiles);
+        EXPECT_LE(overlay.layer->getImage()->s(), 512) << "a coarse picture beside the tiles";
+    }
+    for (const osg::Vec2d& degrees : allOver(12))
+    {
+        SCOPED_TRACE(std::to_string(degrees.x()) + ", " + std::to_string(degrees.y()));
+        int shown = 0;
+        for (const GroundOverlay& overlay : _reader.overlays)
+        {
+            const std::optional<osg::Vec2d> place = placedIn(_reader, overlay, degrees);
+            if (!place) continue;
+            std::string error;
+            const double texel = overlay.tiles->texel() / 4.0;
+            const osg::Vec2d half(texel / 2.0, texel / 2.0);
+            const osg::ref_ptr<osg::Image> image =
+                overlay.tiles->read(*place - half, *place + half, 1, 1, error);
+            ASSERT_TRUE(image) << error;
+            const unsigned char* const color = image->data();
+            if (color[3] == 0) continue;
+            ++shown;
+            EXPECT_NEAR(color[0], (degrees.x() + 180.0) / 360.0 * 255.0, 1.5);
+            EXPECT_NEAR(color[1], (90.0 - degrees.y()) / 180.0 * 255.0, 1.5);
+        }
+        EXPECT_EQ(shown, 1);
+    }
+    // What an overview would have made grey.
+    const GroundOverlay& front = _reader.overlays[0];
+    std::string error;
+    const double texel = front.tiles->texel();
+    const osg::ref_ptr<osg::Image> row = front.tiles->read({0.0, 0.0}, {8.0 * texel, texel}, 32, 4, error);
+    ASSERT_TRUE(row) << error;
+    int least = 255, most = 0;
+    for (unsigned int i = 0; i < 32; ++i)
+    {
+        least = std::min<int>(least, row->data(i, 1)[2]);
+        most = std::max<int>(most, row->data(i, 1)[2]);
+    }
+    EXPECT_GT(most - least, 180);
 }
 
 TEST_F(OverlayReaderTest, WhatDoesNotFitIsLeftOutAndTold)

@@ -10,6 +10,7 @@
 
 #include <ogrsf_frmts.h>
 
+#include <map>
 #include <memory>
 
 using namespace osgGeoFX;
@@ -123,6 +124,116 @@ TEST_F(RouteVectorsTest, GpxHasRoutesAndTheSegmentsOfTracks)
     EXPECT_EQ(routes[2].places.size(), 3u);
     EXPECT_EQ(readAll(file, "routes").size(), 1u);
     EXPECT_TRUE(contains(faultOf(file, "waypoints"), "\"waypoints\""));
+}
+
+TEST_F(RouteVectorsTest, SegmentsOfOnePointAreOneTrack)
+{
+    std::string points;
+    for (int i = 0; i < 5; ++i)
+        points += "<trkseg><trkpt lat=\"45\" lon=\"7.00" + std::to_string(i) + "\"><ele>" +
+                  std::to_string(i) + "</ele></trkpt></trkseg>\n";
+    const std::string text =
+        R"(<?xml version="1.0"?><gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1">
+<trk><name>a</name>)" +
+        points + "</trk><trk><name>b</name>" + points + "</trk></gpx>";
+    const std::vector<RoutePath> routes = readAll(_folder.write("lone.gpx", text).string());
+    ASSERT_EQ(routes.size(), 2u) << "no way reaches into the next track";
+    EXPECT_EQ(routes[0].name, "a");
+    ASSERT_EQ(routes[0].places.size(), 5u);
+    EXPECT_EQ(routes[0].places[4], osg::Vec3d(7.004, 45.0, 4.0));
+    EXPECT_EQ(routes[1].places.size(), 5u);
+    EXPECT_EQ(routes[1].altitude, RoutePath::ABSOLUTE);
+}
+
+namespace
+{
+
+/// Points 10 m apart, with others in between.
+std::string trackOf(int count, const std::map<int, std::string>& others)
+{
+    std::string text =
+        R"(<?xml version="1.0"?><gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1">
+<trk><name>walk</name><trkseg>)";
+    for (int i = 0; i < count; ++i)
+    {
+        if (const auto other = others.find(i); other != others.end()) text += other->second;
+        text += "<trkpt lat=\"" + std::to_string(45.0 + i * 1e-4) + "\" lon=\"7\"/>";
+    }
+    return text + "</trkseg></trk></gpx>";
+}
+
+} // namespace
+
+TEST_F(RouteVectorsTest, LostFixesAreToldAndLeftOut)
+{
+    const std::string zero = "<trkpt lat=\"0\" lon=\"0\"/>", elsewhere = "<trkpt lat=\"46\" lon=\"9\"/>";
+    const struct
+    {
+        const char* name;
+        std::map<int, std::string> others;
+    } cases[] = {{"first", {{0, zero}}},
+                 {"middle", {{7, zero}}},
+                 {"row", {{7, elsewhere + elsewhere + elsewhere}}},
+                 {"twice", {{7, elsewhere}, {9, elsewhere}}},
+                 {"begin", {{0, elsewhere}}}};
+    for (const auto& each : cases)
+    {
+        SCOPED_TRACE(each.name);
+        const std::string file =
+            _folder.write(std::string(each.name) + ".gpx", trackOf(30, each.others)).string();
+        NotifyWatch watch;
+        std::vector<RoutePath> routes;
+        const std::vector<std::string> messages = watch.messagesOf([&] { routes = readAll(file); });
+        ASSERT_EQ(routes.size(), 1u);
+        EXPECT_EQ(routes[0].places.size(), 30u);
+        for (const osg::Vec3d& place : routes[0].places)
+            EXPECT_NEAR(place.y(), 45.0, 0.01);
+        ASSERT_EQ(messages.size(), 1u);
+        EXPECT_TRUE(contains(messages[0], "places of the way \"walk\" lie far from the others"))
+            << messages[0];
+    }
+}
+
+TEST_F(RouteVectorsTest, AJourneyIsNoLostFix)
+{
+    const NotifyWatch watch; // nothing is told
+    // A gap of 200 km, as in a tunnel or an aeroplane.
+    std::string far;
+    for (int i = 0; i < 20; ++i)
+        far += "<trkpt lat=\"" + std::to_string(47.0 + i * 1e-4) + "\" lon=\"7\"/>";
+    EXPECT_EQ(readAll(_folder.write("gap.gpx", trackOf(30, {{30, ""}, {12, far}})).string())[0].places.size(),
+              50u);
+    // A boat that begins its way at 0, 0.
+    const std::string gulf = R"({"type":"LineString","coordinates":[[0,0],[0.1,0.1],[0.2,0.1]]})";
+    EXPECT_EQ(readAll(_folder.write("gulf.geojson", gulf).string())[0].places.size(), 3u);
+}
+
+TEST_F(RouteVectorsTest, IgcIsAFlight)
+{
+    const std::string text = "AXXXABC FLIGHT:1\r\nHFDTE280826\r\nHFPLTPILOT:Nobody\r\nI023636LAD3737LOD\r\n"
+                             "B1200000000000N00000000EV000000000000\r\n"
+                             "B1200014545000N00712600EA011000115005\r\n"
+                             "C not a fix\r\n"
+                             "B1200024545060S00712600WA-0010-001200\r\n";
+    const std::vector<RoutePath> routes = readAll(_folder.write("soaring.igc", text).string());
+    ASSERT_EQ(routes.size(), 1u);
+    EXPECT_EQ(routes[0].name, "soaring");
+    EXPECT_FALSE(routes[0].wayPoints);
+    EXPECT_EQ(routes[0].altitude, RoutePath::ABSOLUTE);
+    ASSERT_EQ(routes[0].places.size(), 2u);
+    EXPECT_NEAR(routes[0].places[0].x(), 7.0 + 12.6005 / 60.0, 1e-9);
+    EXPECT_NEAR(routes[0].places[0].y(), 45.75, 1e-9);
+    EXPECT_EQ(routes[0].places[0].z(), 1150.0) << "of the satellites";
+    EXPECT_NEAR(routes[0].places[1].x(), -7.21, 1e-9);
+    EXPECT_NEAR(routes[0].places[1].y(), -(45.0 + 45.06 / 60.0), 1e-9);
+    EXPECT_EQ(routes[0].places[1].z(), -12.0);
+    const std::string barometer =
+        "AXXXABC\nB1200014545000N00712600EA0110000000\nB1200024545060N00712600EA0112000000\n";
+    EXPECT_EQ(readAll(_folder.write("b.igc", barometer).string())[0].places[1].z(), 1120.0);
+    const std::string bad =
+        "AXXXABC\nB1200014545000N00712600EA0110000000\nB12000245450x0N00712600EA0112000000\n";
+    const std::string fault = faultOf(_folder.write("bad.igc", bad).string());
+    EXPECT_TRUE(contains(fault, "bad.igc:3: this fix cannot be read")) << fault;
 }
 
 TEST_F(RouteVectorsTest, AHeightThatIsNoNumberIsNone)
@@ -273,7 +384,7 @@ TEST_F(RouteVectorsTest, LayersThatHoldNoLinesAreLeftOut)
     ASSERT_TRUE(dataset->CreateLayer("points", nullptr, wkbPoint, nullptr));
     GDALClose(dataset);
     EXPECT_EQ(readAll(file).size(), 1u);
-    EXPECT_TRUE(contains(faultOf(file, "table"), "it has no way"));
+    EXPECT_TRUE(contains(faultOf(file, "table"), "is a table without places"));
 }
 
 TEST_F(RouteVectorsTest, WhatCannotBeReadIsTold)

@@ -240,7 +240,7 @@ TEST_F(SceneMap, ProgramsTakeItOut)
     MapContents again;
     std::vector<std::string> notices;
     std::string error;
-    ASSERT_TRUE(reader.readNames((_folder / "names.geojson").string(), "", error)) << error;
+    ASSERT_TRUE(reader.readNames((_folder / "names.geojson").string(), "", "", error)) << error;
     ASSERT_TRUE(reader.readLines((_folder / "lines.geojson").string(), "", "", error)) << error;
     ASSERT_TRUE(reader.place(again, notices, error)) << error;
     EXPECT_EQ(notices, std::vector<std::string>());

@@ -56,6 +56,30 @@ bool contains(const std::string& text, const std::string& part)
 
 } // namespace
 
+TEST_F(SceneRoutesTest, AWayLongerThanTheGroundIsNoWiderForIt)
+{
+    osg::Vec3d place;
+    _node->getEllipsoidModel()->convertLatLongHeightToXYZ(
+        osg::DegreesToRadians(45.0), osg::DegreesToRadians(7.0), 0.0, place.x(), place.y(), place.z());
+    osg::ref_ptr<osg::MatrixTransform> ground = new osg::MatrixTransform(osg::Matrixd::translate(place));
+    ground->addChild(geofx::test::HeightMesh{
+        [](double, double)
+        {
+            return 0.0;
+        }}.mesh(2));
+    _node->addChild(ground);
+    RoutePath route;
+    route.places = {{7.0, 45.0, 0.0}, {17.0, 45.0, 0.0}};
+    SceneRoutes routes(*_node, *_scene);
+    std::string error;
+    ASSERT_TRUE(routes.add(route, {}, error)) << error;
+    const auto* const effect = dynamic_cast<ProjectiveMappings*>(_scene->getEffect(0));
+    ASSERT_TRUE(effect);
+    const double width = 2.0 * effect->getRoute(0)->getStyle().halfWidth;
+    EXPECT_NEAR(width, 2.0 * static_cast<double>(_node->getBound().radius()) / 120.0, 1.0);
+    EXPECT_LT(width, 300.0);
+}
+
 TEST_F(SceneRoutesTest, WaysWithoutPlacesAreRefused)
 {
     EXPECT_TRUE(contains(faultOf({}), "has no place"));

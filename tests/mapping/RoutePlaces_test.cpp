@@ -275,6 +275,14 @@ TEST_F(RoutePlaces, WaysOfFilesAreSimplifiedOrKeptAndHaveAnEnd)
     EXPECT_EQ(way.getStyle().halfWidth, 250.0);
     EXPECT_EQ(way.getStyle().dash, 70.0);
     EXPECT_EQ(way.getStyle().casing, 3.0) << "as it says";
+    // A long way over small ground is no band across all of it.
+    look = {};
+    look.groundExtent = 60000.0;
+    ASSERT_TRUE(path.showOn(*effect, &earth, nullptr, look, _error)) << _error;
+    EXPECT_EQ(effect->getRoute(2)->getStyle().halfWidth, 250.0);
+    look.groundExtent = 0.0;
+    ASSERT_TRUE(path.showOn(*effect, &earth, nullptr, look, _error)) << _error;
+    EXPECT_GT(effect->getRoute(3)->getStyle().halfWidth, 5000.0);
     look.properties = {{"dash", -1.0}};
     EXPECT_FALSE(path.showOn(*effect, &earth, nullptr, look, _error));
     EXPECT_NE(_error.find("dash"), std::string::npos) << _error;

@@ -273,12 +273,17 @@ TEST(PrintSize, IsReadAsPeopleWriteIt)
     expectSize("A1@300dpi", 9933, 7016, 300.0); // 841 x 594 mm
     expectSize("A0", 14043, 9933, 300.0);
     expectSize("A4-portrait@72dpi", 595, 842, 72.0);
+    expectSize("a4-portrait@72dpi", 595, 842, 72.0);
+    expectSize("Letter@300dpi", 3300, 2550, 300.0); // 11 x 8.5 inches
+    expectSize("letter-portrait@100dpi", 850, 1100, 100.0);
+    expectSize("Legal-portrait", 2550, 4200, 300.0);
+    expectSize("TABLOID@100dpi", 1700, 1100, 100.0);
     expectSize("90x60cm@200dpi", 7087, 4724, 200.0);
     expectSize("25.4x12.7cm@100dpi", 1000, 500, 100.0);
     expectSize("36x24in@300dpi", 10800, 7200, 300.0);
     for (const std::string wrong :
          {"", "1600", "A7", "A1@", "A1@dpi", "A1@0dpi", "A1@300", "1600x900px", "x900", "-5x900", "1e3x900",
-          "0x900", "A0@99999dpi", "1000000x900", "A1-landscape"})
+          "0x900", "A0@99999dpi", "1000000x900", "A1-landscape", "Letters", "Legal-"})
     {
         SCOPED_TRACE(wrong);
         std::string error;

@@ -104,6 +104,35 @@ TEST_F(DepthReaderTest, TellsWhatAWallHides)
     expectDepths();
 }
 
+// Close-ups are drawn by a bin of the stage itself, and renderers put the scene into a bin of their own.
+TEST_F(DepthReaderTest, ReadsAfterBinsThatAreNotNested)
+{
+    osg::Camera& camera = *viewer().getCamera();
+    camera.setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    camera.setViewMatrix(osg::Matrixd());
+    camera.setProjectionMatrixAsPerspective(60.0, 1.0, 1.0, 1000.0);
+    for (const unsigned int mode :
+         {osg::StateSet::USE_RENDERBIN_DETAILS, osg::StateSet::OVERRIDE_RENDERBIN_DETAILS})
+    {
+        SCOPED_TRACE(mode);
+        const osg::ref_ptr<osg::Group> root = new osg::Group;
+        root->getOrCreateStateSet()->setRenderBinDetails(0, "TraversalOrderBin",
+                                                         static_cast<osg::StateSet::RenderBinMode>(mode));
+        const osg::ref_ptr<osg::Geometry> wall = makeWall();
+        wall->getOrCreateStateSet()->setRenderBinDetails(9, "RenderBin",
+                                                         osg::StateSet::OVERRIDE_PROTECTED_RENDERBIN_DETAILS);
+        wall->getStateSet()->setNestRenderBins(false);
+        const osg::ref_ptr<DepthReader> reader = new DepthReader;
+        reader->setImmediate(true);
+        root->addChild(reader);
+        root->addChild(wall);
+        render(root);
+        const auto picture = reader->picture(camera);
+        ASSERT_TRUE(picture);
+        expectTheWall(*picture);
+    }
+}
+
 TEST_F(DepthReaderOfSamples, TellsWhatAWallHides)
 {
     expectDepths();

@@ -16,6 +16,9 @@ namespace osgGeoFX
     the globe is cut into these. */
 struct CubeFace
 {
+    /// What lies farther than this from its own middle, radians, reaches around the globe: a frame's plane has no room for it.
+    static constexpr double leastRadius = 1.0471975511965976; // 60°
+
     /// 0° and 180° on the equator, 90° and −90°, and both poles.
     static std::array<LocalOrigin, 6> origins();
 

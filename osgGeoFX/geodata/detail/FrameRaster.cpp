@@ -147,7 +147,7 @@ void chooseTileCache()
 }
 
 /// The first failure on this thread, for GDAL's warper tells of it in no other way. A tile that a service does not have, at the border of its layer, is none, though
-/// GDAL says that its copy in the cache, a name of 32 digits, is not there.
+/// GDAL says that its copy in the cache, a name of 32 digits, is not there. A place that PROJ cannot transform has no pixel, and takes none from the others.
 class WarpErrors
 {
 public:
@@ -174,6 +174,8 @@ private:
     {
         auto* const errors = static_cast<WarpErrors*>(CPLGetErrorHandlerUserData());
         if (severity < CE_Failure || !errors->message.empty()) return;
+        // Of places that have none, such as the outer half of a cell that is centred on a pole.
+        if (std::string(text).rfind("PROJ: ", 0) == 0) return;
         const bool wasMissing = std::exchange(errors->_missing, isMissingTile(text));
         // GDAL says this of the same tile next.
         const bool isSame = wasMissing && std::string(text) == "GDALWMS: Unable to open downloaded block.";
@@ -398,11 +400,11 @@ osg::Vec2d FrameRaster::middle(const FrameCrs& crs) const
     return {x, y};
 }
 
-std::function<osg::Vec2d(const osg::Vec2d&)> FrameRaster::placer(const FrameCrs& crs) const
+std::function<std::optional<osg::Vec2d>(const osg::Vec2d&)> FrameRaster::placer(const FrameCrs& crs) const
 {
     GdalErrorScope errors;
     const std::shared_ptr<void> transformer = transformerTo(crs, errors);
-    return [this, transformer](const osg::Vec2d& uv)
+    return [this, transformer](const osg::Vec2d& uv) -> std::optional<osg::Vec2d>
     {
         double x = top().GetRasterXSize() * uv.x();
         double y = top().GetRasterYSize() * (1.0 - uv.y());
@@ -410,7 +412,7 @@ std::function<osg::Vec2d(const osg::Vec2d&)> FrameRaster::placer(const FrameCrs&
         int success = FALSE;
         const GdalErrorScope scope;
         GDALGenImgProjTransform(transformer.get(), FALSE, 1, &x, &y, &z, &success);
-        if (!success || !std::isfinite(x) || !std::isfinite(y)) failToPlace(scope);
+        if (!success || !std::isfinite(x) || !std::isfinite(y)) return std::nullopt;
         return osg::Vec2d(x, y);
     };
 }

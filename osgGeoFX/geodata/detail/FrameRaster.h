@@ -96,8 +96,9 @@ public:
     osg::Vec2d middle(const FrameCrs& crs) const;
     /// Moves a frame's origin to the raster's middle.
     void moveToMiddle(MappingFrame& frame) const;
-    /// From 0…1 of the raster's sides, from its lower left corner, to the CRS's unit. Not beyond the raster's own life.
-    std::function<osg::Vec2d(const osg::Vec2d&)> placer(const FrameCrs& crs) const;
+    /// From 0…1 of the raster's sides, from its lower left corner, to the CRS's unit; nothing where the raster shows none of the Earth, as the corners of
+    /// a satellite's picture. Not beyond the raster's own life.
+    std::function<std::optional<osg::Vec2d>(const osg::Vec2d&)> placer(const FrameCrs& crs) const;
 
     /// A rectangle in the CRS's unit, in so many texels: red, green, blue and alpha in bytes, or values in doubles with NaN
     /// where there is none, not yet scaled.

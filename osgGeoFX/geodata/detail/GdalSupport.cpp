@@ -69,10 +69,45 @@ TransformationPtr createTransformation(const OGRSpatialReference& from, const OG
     return result;
 }
 
+namespace
+{
+
+constexpr const char* csvOptions[] = {"X_POSSIBLE_NAMES=longitude,lon,lng,long,x,easting",
+                                      "Y_POSSIBLE_NAMES=latitude,lat,y,northing",
+                                      "GEOM_POSSIBLE_NAMES=wkt,geom,the_geom,geometry,_WKT", nullptr};
+
+void placeCsv(GDALDataset& dataset, const std::string& file)
+{
+    for (OGRLayer* const layer : dataset.GetLayers())
+    {
+        if (layer->GetGeomType() == wkbNone)
+            throw BuildError(file +
+                             ": it has no columns of places; call them longitude and latitude, lon and "
+                             "lat, x and y, or WKT.");
+        OGREnvelope box;
+        if (layer->GetSpatialRef() || layer->GetExtent(&box, TRUE) != OGRERR_NONE || box.MinX < -360.0 ||
+            box.MaxX > 360.0 || box.MinY < -90.0 || box.MaxY > 90.0)
+            continue;
+        // The layer shares it, and counts who does.
+        auto* const degrees = new OGRSpatialReference;
+        degrees->importFromEPSG(4326);
+        degrees->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+        layer->GetLayerDefn()->GetGeomFieldDefn(0)->SetSpatialRef(degrees);
+        degrees->Release();
+        layer->ResetReading();
+    }
+}
+
+} // namespace
+
 DatasetPtr openVectors(const std::string& file)
 {
     const GdalErrorScope errors;
-    DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR));
+    GDALDriverH const driver = GDALIdentifyDriverEx(file.c_str(), GDAL_OF_VECTOR, nullptr, nullptr);
+    const bool isCsv = driver && EQUAL(GDALGetDriverShortName(driver), "CSV");
+    DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR, nullptr,
+                                         isCsv ? csvOptions : nullptr));
+    if (dataset && isCsv) placeCsv(*dataset, file);
     if (!dataset)
         throw BuildError(file + ": it is not vector data that GDAL can read (" + errors.message() +
                          "); check it with ogrinfo, or convert it with ogr2ogr.");
@@ -85,11 +120,13 @@ void forEachLayer(GDALDataset& dataset, const std::string& layer, const std::str
     if (layer.empty())
     {
         for (OGRLayer* const each : dataset.GetLayers())
-            take(*each);
+            if (each->GetGeomType() != wkbNone) take(*each);
         return;
     }
     OGRLayer* const named = dataset.GetLayerByName(layer.c_str());
     if (!named) throw BuildError(file + ": it has no layer \"" + layer + "\"; ogrinfo lists those it has.");
+    if (named->GetGeomType() == wkbNone)
+        throw BuildError(file + ": its layer " + layer + " is a table without places; name another layer.");
     take(*named);
 }
 

@@ -106,10 +106,14 @@ OGRSpatialReference gisOrder(OGRSpatialReference srs);
 TransformationPtr createTransformation(const OGRSpatialReference& from, const OGRSpatialReference& to,
                                        const std::string& file);
 
-/// Opens vector data; throws BuildError where it is none.
+/** Opens vector data; throws BuildError where it is none.
+
+    Places of CSV are in columns longitude and latitude, lon and lat, x and y, or WKT, in any case. Without a reference system (a .prj beside the
+    file) they are degrees of WGS 84 if all may be; else whoever reads the layer refuses it. */
 DatasetPtr openVectors(const std::string& file);
 
-/// Hands out the layer of this name, or all layers if it is empty; throws BuildError where there is none of the name.
+/// Hands out the layer of this name, or all layers if it is empty, without tables of attributes; throws BuildError where there is none of the
+/// name, or where that is a table.
 void forEachLayer(GDALDataset& dataset, const std::string& layer, const std::string& file,
                   const std::function<void(OGRLayer&)>& take);
 

@@ -53,20 +53,53 @@ bool startsWith(const std::string& text, const std::string& start)
     return text.compare(0, start.size(), start) == 0;
 }
 
+std::string lower(std::string text)
+{
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+/// A path of which nothing is there as it is written: as a file or folder is called there, in letters of another case or with back slashes; unchanged
+/// if there is none.
+std::string asItIsCalled(const std::string& path)
+{
+    VSIStatBufL status;
+    const fs::path whole(path);
+    if (VSIStatL(path.c_str(), &status) == 0 || !whole.has_parent_path() || whole.parent_path() == whole)
+        return path;
+    const std::string archive = "/vsizip/{";
+    // Archives of Windows may have entries with back slashes, which are no folders.
+    const bool isInArchive = startsWith(path, archive);
+    const std::string root = isInArchive ? path.substr(0, path.find('}') + 1) : std::string();
+    const std::string folder = isInArchive ? root : asItIsCalled(whole.parent_path().string());
+    const std::string name =
+        lower(isInArchive ? path.substr(std::min(path.size(), root.size() + 1)) : whole.filename().string());
+    const CPLStringList names(isInArchive ? VSIReadDirRecursive(folder.c_str()) : VSIReadDir(folder.c_str()));
+    for (int i = 0; i < names.size(); ++i)
+    {
+        std::string each = lower(names[i]);
+        std::replace(each.begin(), each.end(), '\\', '/');
+        if (each == name) return folder + "/" + names[i];
+    }
+    return path;
+}
+
 } // namespace
 
 std::string documentOfKmz(const std::string& file)
 {
     const GdalErrorScope errors;
-    const CPLStringList names(VSIReadDir(insideOf(file).c_str()));
-    std::string first;
-    for (int i = 0; i < names.size(); ++i)
+    const CPLStringList names(VSIReadDirRecursive(insideOf(file).c_str()));
+    std::string best;
+    const auto rank = [](const std::string& name)
     {
-        const std::string name = names[i];
-        if (extensionOf(name) != ".kml") continue;
-        if (first.empty() || name == "doc.kml") first = name;
-    }
-    return first.empty() ? std::string() : insideOf(file) + "/" + first;
+        return 2 * std::count(name.begin(), name.end(), '/') +
+               (fs::path(name).filename() == "doc.kml" ? 0 : 1);
+    };
+    for (int i = 0; i < names.size(); ++i)
+        if (extensionOf(names[i]) == ".kml" && (best.empty() || rank(names[i]) < rank(best))) best = names[i];
+    return best.empty() ? std::string() : insideOf(file) + "/" + best;
 }
 
 KmlFolder::KmlFolder(const std::string& file, bool allowOutside) : _allowOutside(allowOutside)
@@ -113,11 +146,13 @@ std::optional<std::string> KmlFolder::resolve(const std::string& document, const
         if (!_allowOutside) return std::nullopt;
         return "/vsicurl/" + href;
     }
-    const std::string name = unescaped(startsWith(href, "file://") ? href.substr(7) : href);
+    std::string name = unescaped(startsWith(href, "file://") ? href.substr(7) : href);
+    std::replace(name.begin(), name.end(), '\\', '/');
     if (name.empty() || name.find('\0') != std::string::npos) return std::nullopt;
     if (startsWith(name, "/vsi")) return _allowOutside ? std::optional(name) : std::nullopt;
     // Within an archive ".." is followed by the letters alone, so that no archive leads out of itself.
     std::string path = (fs::path(document).parent_path() / name).lexically_normal().string();
+    if (_allowOutside || isWithin(path)) path = asItIsCalled(path);
     if (!_allowOutside && !isWithin(path)) return std::nullopt;
     // A linked archive stands for the text in it, and may lie within the folder as any file may.
     if (extensionOf(path) == ".kmz" && !startsWith(path, "/vsi")) path = documentOfKmz(path);

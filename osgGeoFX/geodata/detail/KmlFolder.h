@@ -17,7 +17,8 @@ public:
 
     /// The KML text to begin with, as GDAL opens it.
     const std::string& document() const { return _document; }
-    /// What a document's `href` means, as GDAL opens it; nothing if it leads out of the folder.
+    /// What a document's `href` means, as GDAL opens it; nothing if it leads out of the folder. Letters of another case and back slashes count where
+    /// no file is called exactly so.
     std::optional<std::string> resolve(const std::string& document, const std::string& href) const;
     /// For sentences: a path as a person knows it.
     static std::string plain(const std::string& path);
@@ -32,7 +33,7 @@ private:
     bool _allowOutside;
 };
 
-/// The KML text in a KMZ file, as GDAL opens it: `doc.kml`, else the first one of its outermost folder. Empty if there is none.
+/// The KML text in a KMZ file, as GDAL opens it: of those in the outermost folder that has one `doc.kml`, else the first. Empty if there is none.
 std::string documentOfKmz(const std::string& file);
 
 } // namespace osgGeoFX

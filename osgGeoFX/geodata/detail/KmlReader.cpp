@@ -10,7 +10,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -27,7 +26,7 @@ struct Draft
 {
     int line = 0;
     std::string name, href, color, order;
-    std::string north, south, east, west, rotation, quad;
+    std::string north, south, east, west, rotation, quad, altitudeMode;
     bool hasBox = false, hasQuad = false;
 };
 
@@ -47,18 +46,9 @@ public:
     }
 
 private:
-    static bool isFeature(const std::string& name)
-    {
-        // Also those that are not read: what they say of themselves is not their folder's.
-        static const char* const features[] = {"Document",     "Folder",    "GroundOverlay",
-                                               "NetworkLink",  "Placemark", "ScreenOverlay",
-                                               "PhotoOverlay", "Model",     "Tour"};
-        return std::find(std::begin(features), std::end(features), name) != std::end(features);
-    }
-
     void begin() override
     {
-        if (isFeature(element())) _inherited.push_back(_inherited.back());
+        if (isKmlFeature(element())) _inherited.push_back(_inherited.back());
         if (element() == "GroundOverlay")
         {
             _overlay = Draft();
@@ -88,15 +78,20 @@ private:
             if (!_link->href.empty()) _content.links.push_back(*_link);
             _link.reset();
         }
-        if (isFeature(element())) _inherited.pop_back();
+        if (isKmlFeature(element())) _inherited.pop_back();
     }
 
     /// What folders, overlays and links say alike.
     void takeFeature()
     {
         KmlReader::Inherited& here = _inherited.back();
-        if (element() == "visibility" && isFeature(parent()) && (text() == "0" || text() == "false"))
+        if (element() == "visibility" && isKmlFeature(parent()) && (text() == "0" || text() == "false"))
             here.visible = false;
+        const std::string& feature = grandparent();
+        if (parent() == "TimeSpan" && isKmlFeature(feature) && element() == "begin") here.begin = text();
+        if (parent() == "TimeSpan" && isKmlFeature(feature) && element() == "end") here.end = text();
+        if (parent() == "TimeStamp" && isKmlFeature(feature) && element() == "when")
+            here.begin = here.end = text();
         if (isAt({"Region", "Lod", "minLodPixels"})) _minimum = numberOf(text()).value_or(0.0);
         if (isAt({"Region", "Lod", "minFadeExtent"})) _fade = numberOf(text()).value_or(0.0);
         if (!isAt({"Region", "Lod"})) return;
@@ -109,8 +104,10 @@ private:
     {
         Draft& draft = *_overlay;
         const std::string value(text());
-        const std::pair<const char*, std::string*> children[] = {
-            {"name", &draft.name}, {"color", &draft.color}, {"drawOrder", &draft.order}};
+        const std::pair<const char*, std::string*> children[] = {{"name", &draft.name},
+                                                                 {"color", &draft.color},
+                                                                 {"drawOrder", &draft.order},
+                                                                 {"altitudeMode", &draft.altitudeMode}};
         for (const auto& [name, target] : children)
             if (isAt({"GroundOverlay", name})) *target = value;
         if (isAt({"GroundOverlay", "Icon", "href"})) draft.href = value;
@@ -151,6 +148,9 @@ private:
         overlay.visible = inherited.visible;
         overlay.pixelsNone = inherited.pixelsNone;
         overlay.pixelsFull = inherited.pixelsFull;
+        overlay.begin = inherited.begin;
+        overlay.end = inherited.end;
+        result.inAir = !draft.altitudeMode.empty() && draft.altitudeMode.rfind("clamp", 0) != 0;
         if (draft.hasQuad)
             overlay.corners = quadOf(draft.quad);
         else if (draft.hasBox)

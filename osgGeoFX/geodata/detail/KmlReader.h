@@ -19,12 +19,14 @@ struct KmlReader
     {
         bool visible = true;
         double pixelsNone = 0.0, pixelsFull = 0.0;
+        std::string begin, end; ///< as KmlOverlay has them
     };
     struct Overlay
     {
         KmlOverlay overlay; ///< without its image
         std::string href;   ///< as it stands in the text
         int line = 0;
+        bool inAir = false; ///< whether its altitudeMode lifts it off the ground
     };
     struct Link
     {

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <memory>
 
 namespace osgGeoFX
@@ -68,6 +69,15 @@ std::optional<double> numberOf(std::string_view text)
     if (failure != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
         return std::nullopt;
     return value;
+}
+
+bool isKmlFeature(const std::string& name)
+{
+    // Also those that are not read: what they say of themselves is not their folder's.
+    static const char* const features[] = {"Document",     "Folder",    "GroundOverlay",
+                                           "NetworkLink",  "Placemark", "ScreenOverlay",
+                                           "PhotoOverlay", "Model",     "Tour"};
+    return std::find(std::begin(features), std::end(features), name) != std::end(features);
 }
 
 /// What libxml2 calls with each of them; the first one counts.
@@ -130,6 +140,12 @@ const std::string& KmlStream::parent() const
     return _path.size() > 1 ? _path[_path.size() - 2] : none;
 }
 
+const std::string& KmlStream::grandparent() const
+{
+    static const std::string none;
+    return _path.size() > 2 ? _path[_path.size() - 3] : none;
+}
+
 std::string KmlStream::attribute(const char* name) const
 {
     xmlChar* const text = xmlTextReaderGetAttribute(_reader, reinterpret_cast<const xmlChar*>(name));
@@ -158,7 +174,7 @@ void KmlStream::takeNode()
         const bool isEmpty = xmlTextReaderIsEmptyElement(_reader) == 1;
         _path.emplace_back(reinterpret_cast<const char*>(xmlTextReaderConstLocalName(_reader)));
         _text.clear();
-        if (_path.back() == "kml") _sawKml = true;
+        if (_path.back() == "kml" || (_path.size() == 1 && isKmlFeature(_path.back()))) _sawKml = true;
         begin();
         if (isEmpty) close();
         break;

@@ -24,6 +24,9 @@ std::string_view trimmed(std::string_view text);
 /// The whole of a text as a finite number, in every locale.
 std::optional<double> numberOf(std::string_view text);
 
+/// Whether an element is a feature, which may stand alone in a file without `<kml>` around it.
+bool isKmlFeature(const std::string& name);
+
 /** A KML text, read as a stream by libxml2: no document type, so no entities; no network; limits of depth and length. So memory does
     not grow with the number of elements. */
 class KmlStream
@@ -52,6 +55,8 @@ protected:
     const std::string& element() const { return _path.back(); }
     /// The element around the present one; empty if there is none.
     const std::string& parent() const;
+    /// The one around that.
+    const std::string& grandparent() const;
     std::string_view text() const { return trimmed(_text); }
     /// Of the present element, in begin().
     std::string attribute(const char* name) const;

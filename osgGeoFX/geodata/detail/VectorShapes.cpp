@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/CoordinateText.h>
+#include <osgGeoFX/geodata/detail/FeatureTags.h>
 #include <osgGeoFX/geodata/detail/FrameRaster.h>
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
 #include <osgGeoFX/geodata/detail/OgrStyle.h>
@@ -303,10 +304,29 @@ private:
         return static_cast<std::uint32_t>(_result.shapes.size() - 1);
     }
 
+    /// Whether a ring in degrees goes on over the antimeridian, though GeoJSON wants it cut there: its edges go the short way then, close the ring,
+    /// and make it narrower.
+    static bool goesOnOver(const OGRLineString& ring)
+    {
+        const int count = ring.getNumPoints();
+        double x = count > 0 ? ring.getX(0) : 0.0, west = x, east = x;
+        bool any = false;
+        for (int i = 1; i < count; ++i)
+        {
+            const double way = ring.getX(i) - ring.getX(i - 1);
+            any = any || std::abs(way) > 180.0;
+            x += std::remainder(way, 360.0);
+            west = std::min(west, x);
+            east = std::max(east, x);
+        }
+        return any && std::abs(x - ring.getX(0)) < 1e-9 && east > west && east - west < 180.0;
+    }
+
     /// In degrees; pieces, where some vertices have no place.
     std::vector<std::vector<osg::Vec2d>> placesOf(const OGRLineString& line, bool ring)
     {
         std::vector<double> x, y;
+        const bool shortWay = _geographic && (!ring || goesOnOver(line));
         for (int i = 0; i < line.getNumPoints(); ++i)
         {
             const osg::Vec2d place(line.getX(i), line.getY(i));
@@ -315,8 +335,8 @@ private:
             {
                 const osg::Vec2d before(x.back(), y.back());
                 osg::Vec2d way = place - before;
-                // Lines across the antimeridian go the short way. The rings of areas must be cut there, as GeoJSON wants it.
-                if (_geographic && !ring) way.x() = std::remainder(way.x(), 360.0);
+                // Across the antimeridian.
+                if (shortWay) way.x() = std::remainder(way.x(), 360.0);
                 const double parts = std::min(std::ceil(way.length() / _longest), 1e6);
                 for (double part = 1.0; part < parts; part += 1.0)
                 {
@@ -342,7 +362,7 @@ private:
             osg::Vec2d here(x[i], y[i]);
             std::vector<osg::Vec2d>& piece = pieces.back();
             // Without jumps: of lines, and of all that a projection has beyond the antimeridian.
-            if (!piece.empty() && (!ring || !_geographic))
+            if (!piece.empty() && (shortWay || !_geographic))
                 here.x() = piece.back().x() + std::remainder(here.x() - piece.back().x(), 360.0);
             piece.push_back(here);
         }
@@ -396,7 +416,8 @@ private:
         symbol.place.set(x, y);
         if (type == wkbPoint && OGR_GT_HasZ(geometry.getGeometryType()) && std::abs(point.getZ()) < 1e4)
             symbol.height = point.getZ();
-        if (_name >= 0 && feature.IsFieldSetAndNotNull(_name)) symbol.name = feature.GetFieldAsString(_name);
+        if (_name >= 0 && feature.IsFieldSetAndNotNull(_name))
+            symbol.name = cleanText(feature.GetFieldAsString(_name));
         const auto [found, isNew] =
             _symbols.emplace(paint.key(), static_cast<std::uint32_t>(_result.symbolPaints.size()));
         if (isNew) _result.symbolPaints.push_back(paint);

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/CoordinateText.h>
+#include <osgGeoFX/geodata/detail/FeatureTags.h>
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
 #include <osgGeoFX/geodata/detail/Lengths.h>
 
@@ -51,16 +52,6 @@ int fieldOf(const OGRFeatureDefn& layer, std::initializer_list<const char*> name
     for (const char* name : names)
         if (const int index = layer.GetFieldIndex(name); index >= 0) return index;
     return -1;
-}
-
-/// A value of OpenStreetMap's further tags, which GDAL hands out as "key"=>"value", …; empty if there is none.
-std::string tagOf(const std::string& tags, const std::string& key)
-{
-    const std::string start = "\"" + key + "\"=>\"";
-    const std::size_t at = tags.find(start);
-    if (at == std::string::npos) return {};
-    const std::size_t from = at + start.size(), to = tags.find('"', from);
-    return to == std::string::npos ? std::string() : tags.substr(from, to - from);
 }
 
 /// A number at the beginning of a text, whatever the locale; nothing if there is none. `rest` is what follows it.
