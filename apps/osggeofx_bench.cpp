@@ -6,6 +6,7 @@
 #include "bench/Interruption.h"
 #include "bench/Report.h"
 
+#include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/paging/FreedMemory.h>
 
 #include <CLI/CLI.hpp>
@@ -91,6 +92,11 @@ int run(const std::vector<std::string>& names, const std::string& jsonFile, bool
     std::ofstream json;
     if (!jsonFile.empty())
     {
+        osgGeoFX::InputFiles inputs;
+        for (const fs::path& path : {settings.terrain, settings.fuji, settings.builder, settings.inventor,
+                                     settings.data / "oahu", settings.osgEarth})
+            inputs.add(path.string());
+        inputs.claim("The file of figures", jsonFile, "--json");
         // Now rather than after minutes of measuring.
         json.open(jsonFile);
         if (!json)

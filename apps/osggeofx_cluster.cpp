@@ -6,6 +6,7 @@
 #include "cluster/Jobs.h"
 #include "cluster/Prediction.h"
 
+#include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/batch/WorkError.h>
 #include <osgGeoFX/terrain/DistributedBuild.h>
 #include <process/RunProgram.h>
@@ -369,6 +370,13 @@ void predict(Options options)
     if (work.finished)
         throw WorkError(options.folder + ": the work is finished; plan it in another folder to predict it.");
     const std::string source = options.times.empty() ? options.folder : options.times;
+    if (!options.save.empty())
+    {
+        osgGeoFX::InputFiles inputs;
+        inputs.add(osgGeoFX::WorkPlan::workFolder(options.folder));
+        inputs.add(fs::is_directory(source) ? osgGeoFX::WorkPlan::workFolder(source) : source);
+        inputs.claim("The file of times", options.save, "--save");
+    }
     const MeasuredTimes times = MeasuredTimes::read(source);
     if (times.stages.empty())
         throw WorkError(source + ": no times were measured; do some units first, or give --times.");

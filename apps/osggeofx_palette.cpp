@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_palette: palettes of panorama maps, ready ones and those of paintings.
+#include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/PalettePoints.h>
@@ -282,16 +283,17 @@ int main(int argc, char** argv)
     }
     try
     {
+        osgGeoFX::InputFiles inputs;
+        for (const std::string& file :
+             {arguments.painting, arguments.lightMap, arguments.classMap, arguments.points})
+            inputs.add(file);
+        if (!arguments.output.empty()) inputs.claim("The palette", arguments.output, "-o");
         const osg::ref_ptr<osg::Image> palette = paletteOf(arguments);
         sayContrast(*palette);
         if (!arguments.output.empty()) write(*palette, arguments.output);
         return 0;
     }
-    catch (const Failure& failure)
-    {
-        std::cerr << "osggeofx_palette: " << failure.what() << '\n';
-    }
-    catch (const osgGeoFX::BuildError& error)
+    catch (const std::runtime_error& error)
     {
         std::cerr << "osggeofx_palette: " << error.what() << '\n';
     }

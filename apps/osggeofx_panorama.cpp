@@ -12,6 +12,7 @@
 #include "print/PrintOptions.h"
 #include "web/ScenePage.h"
 
+#include <osgGeoFX/batch/OwnFolder.h>
 #include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/offscreen/SceneRenderer.h>
@@ -482,8 +483,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
     options.bits = arguments.print.bits;
     options.renderer = renderer;
     options.names = map.names();
-    options.work = division.any() ? division.tileFolder()
-                                  : fs::path(arguments.output).replace_extension().string() + ".tiles";
+    options.work = division.any() ? division.tileFolder() : geofx::print::tileFolderOf(arguments.output);
     options.recipe = recipe.text() + geofx::names::ageOf(ground) +
                      geofx::names::agesOf(mapOptions(arguments, recipe)) + map.digest() +
                      fs::path(raster).filename().string();
@@ -515,6 +515,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
                      madeOf(arguments, recipe, ground), {seconds, 0.2 * seconds});
         return;
     }
+    const geofx::print::TileFolder folder(arguments.output);
     putTogether();
     if (page) page->write(scene, renderer, view, map.names());
     if (arguments.picks.empty()) return;
@@ -609,6 +610,46 @@ void checkPlan(const Arguments& arguments, const Recipe& recipe)
             "out, or --plan.");
 }
 
+/// Where the recipe is written; empty for nowhere. A recipe that is read stays as it is, unless --recipe names it.
+std::string recipeFileOf(const Arguments& arguments, const fs::path& beside)
+{
+    if (arguments.recipe == "none") return {};
+    if (!arguments.recipe.empty()) return arguments.recipe;
+    const std::string file = beside.string() + ".json";
+    std::error_code ignored;
+    return arguments.sources.size() == 1 && Recipe::isRecipe(arguments.sources.front()) &&
+                   fs::equivalent(file, arguments.sources.front(), ignored)
+               ? std::string()
+               : file;
+}
+
+/// Makes sure that nothing which is read is written over. `work`: the folder for the terrain; empty for none.
+void claimOutputs(const Arguments& arguments, const Recipe& recipe, const std::string& recipeFile,
+                  const std::string& work)
+{
+    osgGeoFX::InputFiles inputs = geofx::names::makeInputFiles();
+    for (const std::string& source : arguments.sources)
+        inputs.add(source);
+    recipe.addInputs(inputs);
+    geofx::names::PictureMap::claimOutput(arguments.output, inputs);
+    geofx::names::claimOutputs(arguments.names, inputs);
+    geofx::layers::claimOutputs(arguments.layers, inputs);
+    geofx::web::claimOutputs(arguments.web, inputs);
+    if (geofx::print::isPrint(arguments.print, arguments.output, sizeOf(recipe)))
+        geofx::print::claimTileFolder(arguments.output, inputs);
+    if (!work.empty())
+    {
+        inputs.claimFolder("The work folder", work, "--work");
+        osgGeoFX::OwnFolder::check(work, "--work");
+    }
+    if (recipeFile.empty()) return;
+    inputs.claim("The recipe", recipeFile, "--recipe");
+    if (fs::exists(recipeFile) && !Recipe::isIn(recipeFile))
+        throw Failure(recipeFile +
+                      ": the recipe of the map would replace this file, which is no recipe; choose another "
+                      "--recipe, or --recipe none.");
+}
+
 void run(Arguments& arguments, geofx::plan::Division& division)
 {
     arguments.output = division.outputOf(arguments.output);
@@ -616,14 +657,13 @@ void run(Arguments& arguments, geofx::plan::Division& division)
     if (!pictures.error().empty()) throw Failure(pictures.error());
     const std::string bitsFault = geofx::print::faultOf(arguments.print, arguments.output);
     if (!bitsFault.empty()) throw Failure(bitsFault);
-    geofx::layers::check(arguments.layers);
-    std::optional<geofx::web::ScenePage> page;
-    if (arguments.web.wanted()) page.emplace(arguments.web, arguments.output);
     Recipe recipe;
+    std::string formerText;
     const bool again = arguments.sources.size() == 1 && Recipe::isRecipe(arguments.sources.front());
     if (again)
     {
         recipe = Recipe::read(arguments.sources.front());
+        formerText = recipe.text();
         if (!arguments.viewFrom.empty() || !arguments.focus.empty() || arguments.width ||
             arguments.exaggeration || arguments.horizonLine || arguments.horizonDistance || arguments.around)
             throw Failure("A recipe has its view already; leave --view-from, --focus, --around, --width, "
@@ -664,13 +704,22 @@ void run(Arguments& arguments, geofx::plan::Division& division)
     const fs::path beside = fs::path(arguments.output).replace_extension();
     std::string work = arguments.work.empty() ? beside.string() + ".work" : arguments.work;
     if (division.any()) work = division.workFile("terrain");
+    const bool builds = recipe.terrain.empty() && (!division.any() || division.plans());
+    const std::string recipeFile = recipeFileOf(arguments, beside);
+    // Workers write into the folder of their plan, which was empty.
+    if (!division.any() || division.plans())
+        claimOutputs(arguments, recipe, recipeFile, builds ? work : std::string());
+    geofx::layers::check(arguments.layers);
+    std::optional<geofx::web::ScenePage> page;
+    if (arguments.web.wanted()) page.emplace(arguments.web, arguments.output);
+
     std::optional<GroundBuilder> builder;
-    if (recipe.terrain.empty()) builder.emplace(recipe, work, arguments.quiet);
+    if (builds) builder.emplace(recipe, work, arguments.quiet);
     if (!again) chooseView(arguments, wishes, builder ? builder->overview() : recipe.terrain, recipe);
     // For workers it is there.
-    const std::string ground = !builder                              ? recipe.terrain
-                               : division.any() && !division.plans() ? GroundBuilder::groundIn(work)
-                                                                     : builder->ground(recipe.view);
+    const std::string ground = builder                  ? builder->ground(recipe.view)
+                               : recipe.terrain.empty() ? GroundBuilder::groundIn(work)
+                                                        : recipe.terrain;
     if (!again && builder)
         recipe.reasons.insert(recipe.reasons.end(), builder->notes().begin(), builder->notes().end());
     if (division.plans()) division.setArguments(workersArguments(arguments, recipe, division));
@@ -681,10 +730,15 @@ void run(Arguments& arguments, geofx::plan::Division& division)
         std::fflush(stdout);
     }
     paint(arguments, ground, recipe, pictures, page ? &*page : nullptr, division);
-    if (arguments.recipe != "none")
-        recipe.write(arguments.recipe.empty() ? beside.string() + ".json" : arguments.recipe);
-    std::error_code ignored;
-    if (arguments.work.empty() && builder && !division.any()) fs::remove_all(work, ignored);
+    if (!recipeFile.empty())
+        recipe.write(recipeFile);
+    else if (again && arguments.recipe.empty() && !arguments.quiet && recipe.text() != formerText)
+        std::fprintf(stderr,
+                     "osggeofx_panorama: %s, which was read, stays as it is; --recipe FILE keeps what was "
+                     "changed.\n",
+                     arguments.sources.front().c_str());
+    builder.reset();
+    if (arguments.work.empty() && builds && !division.any()) osgGeoFX::OwnFolder::remove(work);
 }
 
 } // namespace

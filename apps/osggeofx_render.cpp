@@ -317,9 +317,7 @@ void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::n
     options.bits = arguments.print.bits;
     options.renderer = arguments.renderer;
     options.names = map.names();
-    options.work = division.any()
-                       ? division.tileFolder()
-                       : std::filesystem::path(arguments.output).replace_extension().string() + ".tiles";
+    options.work = division.any() ? division.tileFolder() : geofx::print::tileFolderOf(arguments.output);
     options.recipe = arguments.scene + geofx::names::ageOf(arguments.scene) +
                      geofx::mappings::agesOf(arguments.mappings) + geofx::names::agesOf(arguments.names) +
                      map.digest() + std::filesystem::path(raster).filename().string();
@@ -340,6 +338,7 @@ void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::n
     };
     if (!division.any())
     {
+        const geofx::print::TileFolder folder(arguments.output);
         putTogether();
         return;
     }
@@ -357,7 +356,6 @@ void check(const Arguments& arguments, const geofx::plan::Division& division, co
 {
     const std::string bitsFault = geofx::print::faultOf(arguments.print, arguments.output);
     if (!bitsFault.empty()) throw Failure(badInput, bitsFault);
-    geofx::layers::check(arguments.layers);
     arguments.values.check();
     const bool film = !arguments.camera.path.empty();
     if (arguments.layers.any() && (film || arguments.inset))
@@ -390,6 +388,34 @@ void check(const Arguments& arguments, const geofx::plan::Division& division, co
     }
     if (film && !(arguments.names.svg + arguments.names.geoJson).empty())
         throw Failure(badInput, "--svg and --geojson are for one picture; leave --path out.");
+}
+
+/// Makes sure that nothing which is read is written over. Pictures of a film are left to claimFilm().
+osgGeoFX::InputFiles claimOutputs(const Arguments& arguments, const osgGeoFX::PrintSize& size)
+{
+    osgGeoFX::InputFiles inputs = geofx::names::makeInputFiles();
+    inputs.add(arguments.scene);
+    inputs.add(arguments.camera.path);
+    for (const std::string& city : arguments.cities)
+        inputs.add(city);
+    geofx::mappings::addInputs(arguments.mappings, inputs);
+    geofx::names::addInputs(arguments.names, inputs);
+    if (arguments.camera.path.empty()) geofx::names::PictureMap::claimOutput(arguments.output, inputs);
+    if (!arguments.stats.empty()) inputs.claim("The file of figures", arguments.stats, "--stats");
+    if (!arguments.values.series.empty()) inputs.claim("The table", arguments.values.series, "--series");
+    geofx::names::claimOutputs(arguments.names, inputs);
+    geofx::layers::claimOutputs(arguments.layers, inputs);
+    geofx::web::claimOutputs(arguments.web, inputs);
+    if (geofx::print::isPrint(arguments.print, arguments.output, size))
+        geofx::print::claimTileFolder(arguments.output, inputs);
+    return inputs;
+}
+
+/// Claims the pictures of a film.
+void claimFilm(const PictureFiles& files, const geofx::render::Camera& camera, osgGeoFX::InputFiles& inputs)
+{
+    for (unsigned int frame = camera.first(); frame <= camera.last(); ++frame)
+        inputs.claim("The picture", files.nameOf(frame), "-o");
 }
 
 /// One picture, or those of a film.
@@ -494,6 +520,11 @@ void run(Arguments& arguments, const geofx::plan::Division& division)
     PictureFiles files(geofx::names::PictureMap::rasterOf(arguments.output), !arguments.camera.path.empty());
     if (!files.error().empty()) throw Failure(badInput, files.error());
     check(arguments, division, size);
+    // Workers write into the folder of their plan, which was empty.
+    const bool works = division.any() && !division.plans();
+    osgGeoFX::InputFiles inputs;
+    if (!works) inputs = claimOutputs(arguments, size);
+    geofx::layers::check(arguments.layers);
     std::optional<geofx::web::ScenePage> page;
     if (arguments.web.wanted()) page.emplace(arguments.web, arguments.output);
 
@@ -523,6 +554,7 @@ void run(Arguments& arguments, const geofx::plan::Division& division)
     options.countTriangles = !arguments.stats.empty();
     const geofx::render::Camera camera(arguments.camera, *scene, options.fieldOfView,
                                        static_cast<double>(options.width) / options.height);
+    if (!works && !arguments.camera.path.empty()) claimFilm(files, camera, inputs);
     geofx::names::PictureMap map(arguments.names, arguments.output, size, *scene,
                                  !arguments.layers.folder.empty());
     for (const std::string& notice : map.notices())

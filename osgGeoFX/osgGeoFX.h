@@ -16,6 +16,9 @@
 #include <osgGeoFX/paging/TileGuard.h>
 #include <osgGeoFX/paging/TilePosts.h>
 
+#include <osgGeoFX/batch/FolderLock.h>
+#include <osgGeoFX/batch/InputFiles.h>
+#include <osgGeoFX/batch/OwnFolder.h>
 #include <osgGeoFX/batch/PlannedWork.h>
 #include <osgGeoFX/batch/WholeFile.h>
 #include <osgGeoFX/batch/WorkError.h>

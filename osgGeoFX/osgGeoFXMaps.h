@@ -32,6 +32,7 @@
 #include <osgGeoFX/map/SceneRoutes.h>
 #include <osgGeoFX/map/SceneSequences.h>
 #include <osgGeoFX/map/SequenceFile.h>
+#include <osgGeoFX/map/SourceFiles.h>
 
 #include <osgGeoFX/print/PictureLayers.h>
 #include <osgGeoFX/print/PictureMesh.h>

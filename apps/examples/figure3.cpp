@@ -5,6 +5,8 @@
 // figure3 TERRAIN DATA_FOLDER A|B|C|D|E|F PICTURE [EFFECT...]
 #include "figure3/Figures.h"
 
+#include <osgGeoFX/batch/InputFiles.h>
+#include <osgGeoFX/geodata/FileSources.h>
 #include <osgGeoFX/mapping/RouteMapping.h>
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
@@ -111,6 +113,12 @@ int main(int argc, char** argv)
     {
         if (std::sscanf(size.c_str(), "%5dx%5d", &arguments.width, &arguments.height) != 2)
             throw std::runtime_error("--size " + size + ": write width and height, such as 1200x800.");
+        osgGeoFX::InputFiles inputs([](const std::string& file)
+                                    { return osgGeoFX::FileSources::of(file).files; });
+        inputs.add(arguments.terrain);
+        for (const char* raster : {"elevation.tif", "landcover.tif"})
+            inputs.add(arguments.dataFolder + "/" + raster);
+        inputs.claim("The picture", arguments.picture, "picture");
         draw(arguments);
     }
     catch (const std::exception& failure)

@@ -8,6 +8,7 @@
 #include "flightgear/Ground.h"
 #include "flightgear/Scenery.h"
 
+#include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/viewer/ViewPoint.h>
 
 #include <CLI/CLI.hpp>
@@ -83,6 +84,13 @@ int show(const osgGeoFX::Scene& scene, const osg::Matrixd& view, bool lamps)
 
 int run(const Arguments& arguments)
 {
+    if (!arguments.output.empty() && arguments.check == 0)
+    {
+        osgGeoFX::InputFiles inputs;
+        for (const std::string& mapping : arguments.mappings)
+            inputs.add(mapping.substr(mapping.rfind(',') + 1));
+        inputs.claim("The picture", arguments.output, "--output");
+    }
     const flightgear::Scenery scenery(arguments.data, settingsOf(arguments.settings));
     std::string error;
     const auto eye = osgGeoFX::ViewPoint::parse(arguments.place, error);

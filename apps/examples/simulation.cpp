@@ -6,6 +6,8 @@
 #include "simulation/Fire.h"
 #include "simulation/Flood.h"
 
+#include <osgGeoFX/batch/InputFiles.h>
+#include <osgGeoFX/geodata/FileSources.h>
 #include <osgGeoFX/geodata/MappingRaster.h>
 #include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
@@ -250,6 +252,25 @@ private:
     std::unique_ptr<simulation::Fire> _fire;
 };
 
+std::string frameName(const Arguments& arguments, int frame)
+{
+    char name[40];
+    std::snprintf(name, sizeof name, "%s-%03d.jpg", arguments.kind.c_str(), frame);
+    return (std::filesystem::path(arguments.frames) / name).string();
+}
+
+/// Makes sure that no picture replaces a file that is read.
+void claimFrames(const Arguments& arguments)
+{
+    if (arguments.frames.empty()) return;
+    InputFiles inputs([](const std::string& file) { return FileSources::of(file).files; });
+    inputs.add(arguments.terrain);
+    for (const char* raster : {"elevation.tif", "landcover.tif"})
+        inputs.add((std::filesystem::path(arguments.data) / raster).string());
+    for (int i = 0; i < arguments.count; ++i)
+        inputs.claim("The picture", frameName(arguments, i), "--frames");
+}
+
 /// The scene with its legend in the lower left corner.
 osg::ref_ptr<osg::Node> withLegend(const Simulation& simulation, int width, int height)
 {
@@ -300,9 +321,7 @@ void drawFrames(const Arguments& arguments, const Stage& stage, Simulation& simu
         FrameStatistics statistics;
         const osg::ref_ptr<osg::Image> image = renderer->render(view, time, statistics, error);
         if (!image) throw std::runtime_error(error);
-        char name[40];
-        std::snprintf(name, sizeof name, "%s-%03d.jpg", arguments.kind.c_str(), i);
-        const std::string file = (std::filesystem::path(arguments.frames) / name).string();
+        const std::string file = frameName(arguments, i);
         if (!osgDB::writeImageFile(*image, file, quality))
             throw std::runtime_error(file + " cannot be written.");
         std::cout << file << ": " << simulation.say(time) << std::endl;
@@ -351,6 +370,7 @@ int main(int argc, char** argv)
         if (std::sscanf(arguments.size.c_str(), "%5dx%5d", &arguments.width, &arguments.height) != 2)
             throw std::runtime_error("--size " + arguments.size +
                                      ": write width and height, such as 1200x750.");
+        claimFrames(arguments);
         const bool floods = arguments.kind == "flood";
         const Stage& stage = floods ? floodStage : fireStage;
         Simulation simulation(arguments, stage);

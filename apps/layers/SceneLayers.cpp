@@ -6,8 +6,10 @@
 
 #include <CLI/CLI.hpp>
 #include <osg/Math>
+#include <osgDB/FileNameUtils>
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
 
 namespace geofx::layers
@@ -56,6 +58,24 @@ void addOptions(CLI::App& app, Options& options)
                    "Metres in a local frame, "
                    "which the file tells, with the view")
         ->type_name("FILE.obj|FILE.osgb");
+}
+
+void claimOutputs(const Options& options, osgGeoFX::InputFiles& inputs)
+{
+    namespace fs = std::filesystem;
+    if (!options.folder.empty())
+    {
+        std::vector<std::string> names = osgGeoFX::PictureLayers::fileNames();
+        names.emplace_back("lines.png");
+        for (const std::string& name : names)
+            inputs.claim("The layer", (fs::path(options.folder) / name).string(), "--layers");
+    }
+    if (options.mesh.empty()) return;
+    inputs.claim("The mesh", options.mesh, "--mesh");
+    if (osgDB::getLowerCaseFileExtension(options.mesh) != "obj") return;
+    inputs.claim("The mesh's file", fs::path(options.mesh).replace_extension(".mtl").string(), "--mesh");
+    inputs.claimFolder("The mesh's folder", fs::path(options.mesh).replace_extension(".textures").string(),
+                       "--mesh");
 }
 
 void check(const Options& options)

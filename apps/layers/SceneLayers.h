@@ -4,6 +4,7 @@
 
 #include "names/PictureMap.h"
 
+#include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/print/PictureLayers.h>
 #include <osgGeoFX/viewer/Scene.h>
 
@@ -27,6 +28,9 @@ struct Options
 };
 
 void addOptions(CLI::App& app, Options& options);
+
+/// Claims what the options write. Throws WorkError.
+void claimOutputs(const Options& options, osgGeoFX::InputFiles& inputs);
 
 /// Makes sure, before anything is drawn, that all can be written. Throws std::runtime_error with a sentence.
 void check(const Options& options);

@@ -53,6 +53,12 @@ std::string PictureMap::rasterOf(const std::string& output)
     return isPdf(output) ? fs::path(output).replace_extension(".unfinished.jpg").string() : output;
 }
 
+void PictureMap::claimOutput(const std::string& output, osgGeoFX::InputFiles& inputs)
+{
+    inputs.claim("The picture", output, "-o");
+    if (isPdf(output)) inputs.claim("The picture", rasterOf(output), "-o");
+}
+
 void PictureMap::prepare()
 {
     if (_reader || !(_names || wantsLineVectors())) return;

@@ -47,6 +47,9 @@ public:
     /// Where the picture itself is to be written for an output: there, or for a PDF beside it.
     static std::string rasterOf(const std::string& output);
 
+    /// Claims the files of an output, unless it is that of many pictures. Throws WorkError.
+    static void claimOutput(const std::string& output, osgGeoFX::InputFiles& inputs);
+
     /// For pictures of a renderer: call it before the renderer is made.
     void prepare();
     /// For a picture that a renderer has just drawn: draws on it. `camera`: SceneRenderer::camera().

@@ -124,6 +124,20 @@ void show(Options& options, bool allowOutside, osgGeoFX::Scene& scene, std::vect
     showRoutes(options, scene);
 }
 
+void addInputs(const Options& options, osgGeoFX::InputFiles& inputs)
+{
+    for (const std::string& file : options.files)
+    {
+        inputs.add(file);
+        inputs.add(std::filesystem::path(names::fileAndLayer(file).first).replace_extension(".sld").string());
+    }
+    for (const auto* const files : {&options.sequences, &options.routes})
+        for (const std::string& file : *files)
+            inputs.add(file);
+    inputs.add(options.colors);
+    inputs.add(options.style);
+}
+
 std::string agesOf(const Options& options)
 {
     std::string ages;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/viewer/Scene.h>
 
 #include <string>
@@ -30,6 +31,8 @@ struct Options
 
 /// Adds them to a program.
 void addOptions(CLI::App& app, Options& options);
+/// Adds the files that the options name, and the styles beside them.
+void addInputs(const Options& options, osgGeoFX::InputFiles& inputs);
 /// Puts the files onto the scene, the later ones on top, and ways over rasters. Throws std::runtime_error with a sentence. `notices`: gets sentences that
 /// people should know.
 void show(Options& options, bool allowOutside, osgGeoFX::Scene& scene, std::vector<std::string>& notices);

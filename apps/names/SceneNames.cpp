@@ -3,6 +3,7 @@
 #include "names/SceneNames.h"
 
 #include <osgGeoFX/map/MapReader.h>
+#include <osgGeoFX/map/SourceFiles.h>
 
 #include <CLI/CLI.hpp>
 #include <osgDB/FileNameUtils>
@@ -89,6 +90,34 @@ void addOptions(CLI::App& app, Options& options)
            "Also write names and lines in the picture's coordinates, pixels, as vector data for other "
            "programs")
         ->type_name("FILE.geojson");
+}
+
+osgGeoFX::InputFiles makeInputFiles()
+{
+    return osgGeoFX::InputFiles(
+        [](const std::string& file)
+        {
+            osgGeoFX::SourceFiles sources;
+            sources.file = file;
+            std::string ignored; // without the plugin GDAL's files cannot be read either
+            sources.read(ignored);
+            return sources.files;
+        });
+}
+
+void addInputs(const Options& options, osgGeoFX::InputFiles& inputs)
+{
+    for (const auto* const files : {&options.files, &options.lines})
+        for (const std::string& file : *files)
+            inputs.add(file);
+    inputs.add(options.style);
+    inputs.add(options.font);
+}
+
+void claimOutputs(const Options& options, osgGeoFX::InputFiles& inputs)
+{
+    if (!options.svg.empty()) inputs.claim("The SVG file", options.svg, "--svg");
+    if (!options.geoJson.empty()) inputs.claim("The GeoJSON file", options.geoJson, "--geojson");
 }
 
 std::string ageOf(const std::string& file)

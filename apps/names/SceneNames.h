@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/map/MapContents.h>
 #include <osgGeoFX/viewer/Scene.h>
 
@@ -40,6 +41,13 @@ std::string faultOf(const Options& options, const std::string& scene);
 
 /// FILE, or FILE:LAYER where there is no file of the whole name: the file, and the layer or nothing.
 std::pair<std::string, std::string> fileAndLayer(const std::string& text);
+
+/// For the files that a program reads, with their sources as osgdb_geofxdata tells them.
+osgGeoFX::InputFiles makeInputFiles();
+/// Adds the files that the options name.
+void addInputs(const Options& options, osgGeoFX::InputFiles& inputs);
+/// Claims the files that --svg and --geojson name. Throws WorkError.
+void claimOutputs(const Options& options, osgGeoFX::InputFiles& inputs);
 
 /// When a file was changed last, as a text: what was drawn of a former one must not be used again. Empty if there is none.
 std::string ageOf(const std::string& file);

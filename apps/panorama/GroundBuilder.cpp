@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "panorama/GroundBuilder.h"
 
+#include <osgGeoFX/batch/OwnFolder.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <osgGeoFX/terrain/ProgressLine.h>
 #include <osgGeoFX/terrain/ThinnedRaster.h>
@@ -88,12 +89,8 @@ osgGeoFX::VerticalDatum datumOf(const std::string& name)
 GroundBuilder::GroundBuilder(const Recipe& recipe, std::string folder, bool quiet)
     : _recipe(recipe), _folder(std::move(folder)), _quiet(quiet)
 {
-    std::error_code fault;
-    fs::create_directories(_folder, fault);
-    if (fault)
-        throw Failure(
-            _folder +
-            ": the work folder cannot be made; check its permissions, or name another one with --work.");
+    osgGeoFX::OwnFolder::take(_folder, "--work");
+    _lock.emplace(_folder, osgGeoFX::FolderLock::ALONE, "--work");
     _spacing = HUGE_VAL;
     for (const std::string& dem : recipe.dems)
     {

@@ -4,8 +4,10 @@
 
 #include "panorama/Recipe.h"
 
+#include <osgGeoFX/batch/FolderLock.h>
 #include <osgGeoFX/panorama/TerrainRelief.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +19,8 @@ namespace geofx::panorama
 class GroundBuilder
 {
 public:
-    /// `folder` is made if missing. `quiet`: without progress.
+    /// Takes the folder (OwnFolder), which nobody else may use meanwhile. Throws WorkError if it has other files, or somebody else uses it.
+    /// `quiet`: without progress.
     GroundBuilder(const Recipe& recipe, std::string folder, bool quiet);
 
     /// The terrain as a whole, for the choice of a view; with at most some two million samples. Returns the database's file.
@@ -34,6 +37,7 @@ private:
 
     const Recipe& _recipe;
     const std::string _folder;
+    std::optional<osgGeoFX::FolderLock> _lock;
     const bool _quiet;
     double _spacing = 0.0; ///< of the densest DEM, metres
     double _samples = 0.0; ///< of all DEMs

@@ -22,6 +22,8 @@ namespace
 {
 
 constexpr int newestFormat = 1;
+/// The value of a recipe that other files do not have.
+constexpr const char* formatName = "osggeofx_panorama";
 
 /// A path, or FILE:LAYER, as a file in `folder` names it, and back. Addresses and GDAL's own file systems stay as they are.
 std::string relativePath(const std::string& path, const fs::path& folder)
@@ -70,6 +72,13 @@ bool Recipe::isRecipe(const std::string& file)
     return fs::path(file).extension() == ".json";
 }
 
+bool Recipe::isIn(const std::string& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    const Json json = Json::parse(stream, nullptr, false);
+    return json.is_object() && json.contains(formatName);
+}
+
 bool Recipe::isTerrain(const std::string& file)
 {
     static const std::set<std::string> extensions = {".osgb", ".osgt",  ".osgx", ".osg",
@@ -87,7 +96,7 @@ Recipe Recipe::read(const std::string& file)
     {
         Json json;
         stream >> json;
-        if (json.at("osggeofx_panorama").get<int>() != newestFormat)
+        if (json.at(formatName).get<int>() != newestFormat)
             throw Failure(
                 file + ": is a recipe of another version of osggeofx_panorama; make it again with this one.");
         recipe.terrain = pathFrom(json.value("terrain", ""), folder);
@@ -144,7 +153,7 @@ namespace
 Json jsonOf(const Recipe& recipe, const fs::path& folder)
 {
     Json json;
-    json["osggeofx_panorama"] = newestFormat;
+    json[formatName] = newestFormat;
     if (recipe.terrain.empty())
     {
         json["dems"] = Json::array();
@@ -196,6 +205,15 @@ std::string Recipe::text() const
     Json json = jsonOf(*this, ".");
     json.erase("reasons");
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+void Recipe::addInputs(osgGeoFX::InputFiles& inputs) const
+{
+    for (const auto* const files : {&dems, &labels, &lines})
+        for (const std::string& file : *files)
+            inputs.add(file);
+    for (const std::string& file : {terrain, landCover, landCoverTable, treeCover, palette, labelStyle, font})
+        inputs.add(file);
 }
 
 void Recipe::write(const std::string& file) const

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/panorama/PanoramaComposer.h>
 
 #include <map>
@@ -49,10 +50,14 @@ struct Recipe
 
     /// Whether a file is a recipe, by its name.
     static bool isRecipe(const std::string& file);
+    /// Whether there is a recipe of any version in a file.
+    static bool isIn(const std::string& file);
     /// Whether it is a terrain or a scene of OpenSceneGraph's, by its name.
     static bool isTerrain(const std::string& file);
     static Recipe read(const std::string& file); ///< throws Failure
     void write(const std::string& file) const;   ///< a whole file or none; throws Failure
+    /// Adds the files that it names.
+    void addInputs(osgGeoFX::InputFiles& inputs) const;
     /// What read() needs, as a file in the current folder would have it.
     std::string text() const;
 };

@@ -4,11 +4,28 @@
 
 #include "names/PictureMap.h"
 
+#include <osgGeoFX/batch/OwnFolder.h>
+
 #include <CLI/CLI.hpp>
 #include <osgDB/FileNameUtils>
 
+#include <filesystem>
+
 namespace geofx::print
 {
+
+namespace
+{
+
+constexpr const char* OPTION = "-o";
+
+std::string taken(const std::string& folder)
+{
+    osgGeoFX::OwnFolder::take(folder, OPTION);
+    return folder;
+}
+
+} // namespace
 
 void addOptions(CLI::App& app, Options& options)
 {
@@ -33,6 +50,22 @@ bool isPrint(const Options& options, const std::string& output, const osgGeoFX::
 {
     return size.dpi > 0.0 || options.bits > 8 || osgGeoFX::PicturePrint::isLarge(size) ||
            names::PictureMap::isPdf(output) || osgDB::getLowerCaseFileExtension(output) == "exr";
+}
+
+std::string tileFolderOf(const std::string& output)
+{
+    return std::filesystem::path(output).replace_extension().string() + ".tiles";
+}
+
+void claimTileFolder(const std::string& output, osgGeoFX::InputFiles& inputs)
+{
+    inputs.claimFolder("The folder for tiles", tileFolderOf(output), OPTION);
+    osgGeoFX::OwnFolder::check(tileFolderOf(output), OPTION);
+}
+
+TileFolder::TileFolder(const std::string& output)
+    : _lock(taken(tileFolderOf(output)), osgGeoFX::FolderLock::ALONE, OPTION)
+{
 }
 
 } // namespace geofx::print

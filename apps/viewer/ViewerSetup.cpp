@@ -32,6 +32,7 @@
 
 #include <osg/Math>
 #include <osgDB/FileUtils>
+#include <osgDB/WriteFile>
 #include <osgGA/AnimationPathManipulator>
 #include <osgGA/DriveManipulator>
 #include <osgGA/FirstPersonManipulator>
@@ -115,6 +116,41 @@ void selectPanorama(osgGA::KeySwitchMatrixManipulator& manipulators, osgGeoFX::E
     }
 }
 
+/// Pictures of the window, each in a file that is not there yet.
+class NewPictures : public osgViewer::ScreenCaptureHandler::CaptureOperation
+{
+public:
+    void operator()(const osg::Image& image, const unsigned int context) override
+    {
+        const std::string begin = "screen_shot_" + std::to_string(context) + "_";
+        std::string file;
+        do
+            file = begin + std::to_string(_next++) + ".jpg";
+        while (osgDB::fileExists(file));
+        if (!osgDB::writeImageFile(image, file))
+            OSG_WARN << "osgGeoFX: " << file << " cannot be written; check the folder and the disk's space."
+                     << std::endl;
+    }
+
+private:
+    unsigned int _next = 0;
+};
+
+/// Where flights are recorded: OSG's usual file, unless paths are played, which it may be one of.
+std::string flightFile(const osgGA::KeySwitchMatrixManipulator& manipulators)
+{
+    const auto& all = manipulators.getKeyManipMap();
+    const bool plays =
+        std::any_of(all.begin(), all.end(),
+                    [](const auto& each) {
+                        return dynamic_cast<const osgGA::AnimationPathManipulator*>(each.second.second.get());
+                    });
+    std::string file = "saved_animation.path";
+    for (int number = 2; plays && osgDB::fileExists(file); ++number)
+        file = "saved_animation-" + std::to_string(number) + ".path";
+    return file;
+}
+
 } // namespace
 
 void setManipulators(osgViewer::Viewer& viewer, osgGA::KeySwitchMatrixManipulator& manipulators,
@@ -174,9 +210,9 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
     viewer.addEventHandler(new osgViewer::ThreadingHandler);
     viewer.addEventHandler(new osgViewer::WindowSizeHandler);
     viewer.addEventHandler(new osgViewer::StatsHandler);
-    viewer.addEventHandler(new osgViewer::RecordCameraPathHandler);
+    viewer.addEventHandler(new osgViewer::RecordCameraPathHandler(flightFile(manipulators)));
     viewer.addEventHandler(new osgViewer::LODScaleHandler);
-    viewer.addEventHandler(new osgViewer::ScreenCaptureHandler);
+    viewer.addEventHandler(new osgViewer::ScreenCaptureHandler(new NewPictures));
     viewer.addEventHandler(new osgGeoFX::LodScaleFollower(scene));
     viewer.addEventHandler(osgGeoFX::makePartsHandler(*scene.effects));
 

@@ -68,6 +68,11 @@ void addOptions(CLI::App& app, Options& options)
         ->type_name("TEXT");
 }
 
+void claimOutputs(const Options& options, osgGeoFX::InputFiles& inputs)
+{
+    if (options.wanted()) inputs.claimFolder("The web page", options.folder, "--web");
+}
+
 ScenePage::ScenePage(const Options& options, const std::string& picture) : _options(options)
 {
     const std::string fault = osgGeoFX::WebPage::faultOf(options.folder);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/labels/NameSet.h>
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/viewer/Scene.h>
@@ -31,6 +32,9 @@ struct Options
 
 /// Adds --web, --title and --attribution to a program.
 void addOptions(CLI::App& app, Options& options);
+
+/// Claims the page's folder. Throws WorkError.
+void claimOutputs(const Options& options, osgGeoFX::InputFiles& inputs);
 
 /** A page about the picture that a program draws. All throw std::runtime_error with a sentence. */
 class ScenePage

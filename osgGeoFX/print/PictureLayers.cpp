@@ -363,6 +363,15 @@ bool PictureLayers::prepare(const std::string& folder, std::string& error)
     return true;
 }
 
+std::vector<std::string> PictureLayers::fileNames()
+{
+    std::vector<std::string> names = {"labels.png", "layers.json"};
+    const LayerList all(true, true, true, {});
+    for (const LayerList::Layer& layer : all.layers())
+        names.push_back(layer.file);
+    return names;
+}
+
 bool PictureLayers::write(const Scene& scene, const Options& options, const osg::Matrixd& view,
                           const std::string& folder, std::string& error)
 {

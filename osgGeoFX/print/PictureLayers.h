@@ -65,6 +65,9 @@ public:
     /// Makes the folder where there is none, in a folder that is there. False, with a sentence in `error`, if layers cannot be written there.
     static bool prepare(const std::string& folder, std::string& error);
 
+    /// The names that files of layers may have, but for those of overlays.
+    static std::vector<std::string> fileNames();
+
     /** Draws a scene from a view matrix, several times, and writes its layers into a folder; memory has one row of tiles. False, with a sentence
         in `error`, if it cannot. No other renderer may show the scene meanwhile. */
     static bool write(const Scene& scene, const Options& options, const osg::Matrixd& view,

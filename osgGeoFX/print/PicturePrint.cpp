@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/print/PicturePrint.h>
 
+#include <osgGeoFX/batch/OwnFolder.h>
 #include <osgGeoFX/batch/WholeFile.h>
 #include <osgGeoFX/batch/detail/ContentHash.h>
 #include <osgGeoFX/labels/LabelPicture.h>
@@ -53,11 +54,7 @@ public:
     TileFiles(fs::path folder, std::string key, const OIIO::TypeDesc& type)
         : _folder(std::move(folder)), _key(std::move(key)), _type(type)
     {
-        std::error_code fault;
-        fs::create_directories(_folder, fault);
-        if (fault)
-            throw Fault("The folder \"" + _folder.string() +
-                        "\" cannot be made; name another one, or free some space.");
+        OwnFolder::take(_folder.string(), "folder");
     }
 
     fs::path pathOf(const PictureTile& tile) const
@@ -111,11 +108,7 @@ public:
 
     const fs::path& folder() const { return _folder; }
 
-    void remove() const
-    {
-        std::error_code ignored;
-        fs::remove_all(_folder, ignored);
-    }
+    void remove() const { OwnFolder::remove(_folder.string()); }
 
 private:
     const fs::path _folder;

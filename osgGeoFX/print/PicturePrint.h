@@ -60,7 +60,8 @@ public:
         std::function<void(const LabelPicture& names)> placed;
         /// A file for the picture with the overlay and without names, of 8 bits, such as a web page is made of; empty: none.
         std::string plain;
-        std::string work; ///< the folder for tiles; it is made, and removed when the picture is there
+        std::string
+            work; ///< the folder for tiles, an OwnFolder; it is made, and removed when the picture is there
         /// What the picture is made of, in any words: tiles of a former run are used only if it is the same.
         std::string recipe;
         /// Metadata to be written, by name and value.

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/DistributedBuild.h>
 
-#include <osgGeoFX/batch/WorkError.h>
 #include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 #include <osgGeoFX/terrain/detail/PlanFile.h>
@@ -18,20 +17,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-
-/// The result of a call. What it says of a work, it says of a build.
-template<typename Call>
-auto sayAsBuildError(Call call)
-{
-    try
-    {
-        return call();
-    }
-    catch (const WorkError& error)
-    {
-        throw BuildError(error.what());
-    }
-}
 
 /// The same file, whatever the folder that a process runs in.
 void makeAbsolute(std::string& file)
@@ -64,6 +49,8 @@ BuiltDatabaseUnits buildUnits(const std::string& folder, const std::vector<std::
                               int memoryMiB)
 {
     BuiltDatabaseUnits result;
+    // Workers share the folder. Whoever plans or builds alone must wait for them.
+    const std::shared_ptr<const FolderLock> lock = lockFolder(folder, FolderLock::TOGETHER);
     const fs::path root = fs::path(folder) / "terrain.osgb";
     // A process that was killed while it put files into their places, or one that comes too late.
     completeFolder(folder);

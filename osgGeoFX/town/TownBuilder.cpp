@@ -173,6 +173,7 @@ TownSummary buildTown(const TownOptions& options, const TownProgress& progress)
     const auto start = std::chrono::steady_clock::now();
     TownSummary summary;
     const fs::path folder = options.database, file = folder / "terrain.osgb";
+    const std::shared_ptr<const FolderLock> folderLock = lockFolder(folder, FolderLock::ALONE);
     // An update of the terrain that is ready ends first.
     if (fs::exists(folder)) completeFolder(folder);
     const osg::ref_ptr<osg::CoordinateSystemNode> root = readRoot(file);

@@ -29,14 +29,6 @@ std::vector<std::string> outsidePaths(const SceneFile& scene, const std::string&
 /// One sentence for each file of a scene on a web server that is not fetched from there: all but the database.
 std::vector<std::string> unfetchedPaths(const SceneFile& scene);
 
-/// What osgdb_geofxdata is asked for under the name "sources", and its answer: where a file takes its data from.
-struct SourcesRequest
-{
-    std::string file;
-    std::vector<std::string> files; ///< as complete paths where they are paths
-    std::string service;            ///< the format's name, where the data come from a network or a data base
-};
-
 /// One sentence for each file of the scene that takes its data from outside the folder, such as a GDAL virtual raster. They are asked
 /// of osgdb_geofxdata; without it nothing is known, and nothing of the kind can be read.
 std::vector<std::string> outsideSources(const SceneFile& scene, const std::string& folder);

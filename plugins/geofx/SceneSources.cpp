@@ -3,6 +3,7 @@
 #include "SceneLoading.h"
 #include "SceneReach.h"
 
+#include <osgGeoFX/map/SourceFiles.h>
 #include <osgGeoFX/paging/RemoteFiles.h>
 
 #include <osgDB/FileNameUtils>
@@ -47,7 +48,7 @@ std::string faultOf(const std::string& file, const std::string& folder)
     }
     while (!open.empty())
     {
-        SourcesRequest request;
+        SourceFiles request;
         request.file = open.back();
         open.pop_back();
         SceneTerrain::askIfAny("sources", &request);

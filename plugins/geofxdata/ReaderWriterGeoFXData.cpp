@@ -28,6 +28,7 @@
 #include <osgGeoFX/map/OverlayFile.h>
 #include <osgGeoFX/map/RouteFile.h>
 #include <osgGeoFX/map/SequenceFile.h>
+#include <osgGeoFX/map/SourceFiles.h>
 #include <osgGeoFX/raster/ColorRampFile.h>
 #include <serializers/LayerRequests.h>
 
@@ -336,7 +337,7 @@ private:
     {
         const std::string error = otherVersion(options);
         if (!error.empty()) return error;
-        auto* request = static_cast<SourcesRequest*>(const_cast<void*>(options.getPluginData("request")));
+        auto* request = static_cast<SourceFiles*>(const_cast<void*>(options.getPluginData("request")));
         if (!request) return ReadResult::FILE_NOT_HANDLED;
         const FileSources found = FileSources::of(request->file);
         request->files = found.files;

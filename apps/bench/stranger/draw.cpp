@@ -7,6 +7,7 @@
 #include "bench/Figure.h"
 #include "bench/SingleMesh.h"
 
+#include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/offscreen/EglGraphicsContext.h>
 #include <osgGeoFX/viewer/Scene.h>
 
@@ -300,9 +301,14 @@ int main(int argc, char** argv)
     CLI11_PARSE(app, argc, argv);
     try
     {
+        osgGeoFX::InputFiles inputs;
+        for (const std::string& file : {task.file, task.single, task.behind})
+            inputs.add(file);
+        if (!task.image.empty()) inputs.claim("The picture", task.image, "--image");
+        if (!task.mask.empty()) inputs.claim("The picture", task.mask, "--mask");
         std::cout << draw(task).dump() << std::endl;
     }
-    catch (const BenchError& error)
+    catch (const std::runtime_error& error)
     {
         std::cerr << "geofx_bench_draw: " << error.what() << std::endl;
         return 1;

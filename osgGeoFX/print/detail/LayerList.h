@@ -26,6 +26,7 @@ public:
     /// `noReference`: why pixels have no longitude and latitude; empty where they have.
     LayerList(bool painted, bool water, bool strokes, const std::string& noReference);
 
+    const std::deque<Layer>& layers() const { return _layers; }
     /// Null where the picture has no such layer.
     const Layer* find(const std::string& name) const;
     /// A layer of colors above all others.

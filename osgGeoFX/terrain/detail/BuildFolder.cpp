@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/detail/BuildFolder.h>
 
+#include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/batch/PlannedWork.h>
 #include <osgGeoFX/terrain/detail/AtomicFile.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
@@ -74,6 +75,21 @@ std::vector<fs::path> deepestFirst(const fs::path& folder)
     return result;
 }
 
+/// Makes sure that no source is removed with the former database. Throws WorkError.
+void keepSources(const BuildPlan& plan)
+{
+    const BuildOptions& options = plan.options;
+    InputFiles inputs;
+    for (const auto* const files : {&options.dems, &options.imagery})
+        for (const std::string& file : *files)
+            inputs.add(file);
+    for (const std::string& file : {options.landCover, options.landCoverTable, options.treeCover})
+        inputs.add(file);
+    const fs::path folder = options.output;
+    for (const char* part : {"terrain.osgb", ORIGIN_FILE, "tiles", "work", "kept", "buildings"})
+        inputs.claimFolder("The database's", (folder / part).string(), "-o");
+}
+
 /// What updates need becomes `kept`, in the place of what the former build has left.
 void replaceKept(const fs::path& database)
 {
@@ -92,6 +108,11 @@ void replaceKept(const fs::path& database)
 }
 
 } // namespace
+
+std::shared_ptr<const FolderLock> lockFolder(const fs::path& folder, FolderLock::Kind kind)
+{
+    return sayAsBuildError([&] { return std::make_shared<const FolderLock>(folder.string(), kind, "-o"); });
+}
 
 std::uint64_t bytesBelow(const fs::path& folder)
 {
@@ -151,12 +172,14 @@ FolderState prepareFolder(BuildPlan& plan)
         throw BuildError(folder.string() + ": the folder cannot be made (" +
                          (code ? code.message() : std::string("a file has this name")) +
                          "); choose another with -o.");
+    sayAsBuildError([&] { keepSources(plan); });
+    plan.folderLock = lockFolder(folder, FolderLock::ALONE);
     completeFolder(folder);
     // A kill in its very first moments leaves only the origin's temporary file.
     for (const auto& entry : fs::directory_iterator(folder, code))
         if (isLeftover(entry.path()) && entry.path().filename().string().rfind(ORIGIN_FILE, 0) == 0)
             fs::remove(entry.path(), code);
-    const bool ours = fs::exists(origin);
+    const bool ours = readText(origin).rfind(ORIGIN_BEGIN, 0) == 0;
     if (!ours && !fs::is_empty(folder))
         throw BuildError(
             folder.string() +

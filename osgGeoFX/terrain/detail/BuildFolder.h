@@ -2,8 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/batch/FolderLock.h>
+#include <osgGeoFX/batch/WorkError.h>
+#include <osgGeoFX/geodata/BuildError.h>
+
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +19,8 @@ class BuildPlan;
 
 /// The file of a database's folder that says what it was built from. An update that goes on has one among its work files.
 constexpr const char* ORIGIN_FILE = "built-from.txt";
+/// How that file begins, which tells a database from folders of others.
+constexpr const char* ORIGIN_BEGIN = "osgGeoFX terrain database";
 /// The file among what is kept that says what all units depend on (BuildPlan::common).
 constexpr const char* COMMON_FILE = "common.txt";
 /// The file among what is kept that has the range of all heights, which colors may follow.
@@ -34,6 +41,23 @@ std::string heightRange(const BuildPlan& plan);
 /// All of a file; empty if it cannot be read.
 std::string readText(const std::filesystem::path& path);
 
+/// The result of a call. What it says of a work or a folder, it says of a build.
+template<typename Call>
+auto sayAsBuildError(Call call)
+{
+    try
+    {
+        return call();
+    }
+    catch (const WorkError& error)
+    {
+        throw BuildError(error.what());
+    }
+}
+
+/// Locks a database's folder. Throws BuildError if somebody else has it.
+std::shared_ptr<const FolderLock> lockFolder(const std::filesystem::path& folder, FolderLock::Kind kind);
+
 /// How a build begins.
 struct FolderState
 {
@@ -42,7 +66,8 @@ struct FolderState
     std::string allBecause; ///< why the update must build everything, as a clause; else empty
 };
 
-/** Empties or adopts the output folder. Sets the plan's `staged` and `kept`. Throws BuildError.
+/** Empties or adopts the output folder, which nobody else may use as long as the plan lives. Sets the plan's `folderLock`, `staged` and `kept`. Throws
+    BuildError.
 
     What makes a folder what it is:
     - `built-from.txt` and no `terrain.osgb`: a build was begun.

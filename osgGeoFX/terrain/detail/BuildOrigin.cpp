@@ -3,6 +3,7 @@
 //
 // What a database is made from, in words.
 #include <osgGeoFX/terrain/BuilderCode.h>
+#include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 
 #include <osgGeoFX/paging/TerrainInfo.h>
@@ -62,8 +63,8 @@ void BuildPlan::chooseFingerprint()
     }
 
     std::ostringstream head, sources, settings, grid;
-    head << "osgGeoFX terrain database, format " << TerrainInfo::newestFormat << ", content "
-         << DATABASE_CONTENT << "\nbuilder " << builderCode() << "\n";
+    head << ORIGIN_BEGIN << ", format " << TerrainInfo::newestFormat << ", content " << DATABASE_CONTENT
+         << "\nbuilder " << builderCode() << "\n";
     for (const auto* list : {&demSources, &imagerySources})
         for (const Source& source : *list)
             sources << source.identity;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/batch/FolderLock.h>
 #include <osgGeoFX/batch/detail/ContentHash.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <osgGeoFX/terrain/detail/BlendMask.h>
@@ -105,6 +106,8 @@ public:
     std::vector<GroundPatch> groundPatches;
     std::shared_ptr<const GroundRaster> ground; ///< from the ground pass on
     std::shared_ptr<const VoidRaster> voids;    ///< null until the voids are filled, and if there are none
+    /// Keeps others out of the database's folder, from prepareFolder() on.
+    std::shared_ptr<const FolderLock> folderLock;
     std::string fingerprint;                    ///< what the database's bytes depend on, in words
     /// What all units depend on, in words: the fingerprint without the sources of a part, and the grid.
     std::string common;

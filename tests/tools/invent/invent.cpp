@@ -5,6 +5,7 @@
 // or, for the terrain of data/oahu, a town (geofx_invent town FILE.gpkg [BUILDINGS]), houses all over the island (geofx_invent
 // crowd FILE.gpkg [BUILDINGS]), the streets between a town's houses (geofx_invent streets FILE.geojson [BUILDINGS]), a land cover with their
 // gardens (geofx_invent gardens FROM.tif FILE.tif), or an aerial picture (geofx_invent aerial FILE.tif [COLUMNS]).
+#include <osgGeoFX/batch/InputFiles.h>
 #include <tools/InventedAerial.h>
 #include <tools/InventedTerrain.h>
 #include <tools/InventedTown.h>
@@ -48,6 +49,9 @@ int main(int argc, char** argv)
         }
         if (name == "gardens" && argc > 3)
         {
+            osgGeoFX::InputFiles inputs;
+            inputs.add(argv[2]);
+            inputs.claim("The land cover", argv[3], "FILE.tif");
             std::printf("%s: %d cells with gardens.\n", argv[3],
                         geofx::test::inventGardens(argv[2], argv[3]));
             return 0;
