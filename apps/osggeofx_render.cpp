@@ -9,6 +9,7 @@
 #include "plan/PicturePlan.h"
 #include "print/PrintOptions.h"
 #include "render/Camera.h"
+#include "render/Deadline.h"
 #include "render/Values.h"
 #include "web/ScenePage.h"
 
@@ -170,7 +171,8 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->capture_default_str();
     app.add_flag("--wait-for-tiles,!--no-wait-for-tiles", arguments.renderer.waitForTiles,
                  "Wait until every tile that the picture needs is there (the default), or do not");
-    app.add_option("--timeout", arguments.renderer.timeout, "Longest wait for each picture, in seconds")
+    app.add_option("--timeout", arguments.renderer.timeout,
+                   "Longest wait for the scene's files, and for each picture, in seconds")
         ->type_name("S")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
@@ -192,7 +194,8 @@ void addOptions(CLI::App& app, Arguments& arguments)
     app.footer(
         "Without --view, --eye or --path the scene's home view is taken, or one that shows the whole scene. "
         "The same command gives the same bytes.\n"
-        "Exit code: 0; 1 if tiles did not arrive in time; 2 if the input, the output or the machine's "
+        "Exit code: 0; 1 if tiles or files did not arrive in time; 2 if the input, the output or the "
+        "machine's "
         "OpenGL is at fault.\n\n"
         "Examples:\n"
         "  osggeofx_render oahu.geofx -o oahu.png\n"
@@ -509,8 +512,16 @@ void divide(const Arguments& arguments, const geofx::render::Camera& camera, Pic
                  {secondsOf(arguments.renderer) * static_cast<double>(count), 0.1});
 }
 
-void run(Arguments& arguments, const geofx::plan::Division& division)
+void run(Arguments& arguments, const geofx::plan::Division& division, geofx::render::Deadline& deadline)
 {
+    arguments.renderer.waits = [&](bool waits)
+    {
+        if (waits)
+            deadline.start(arguments.renderer.timeout);
+        else
+            deadline.stop();
+    };
+    arguments.renderer.waits(true);
     if (!arguments.camera.path.empty() && arguments.camera.frames.empty() &&
         !(arguments.camera.framesASecond > 0.0))
         throw Failure(badInput, "--path: say how many pictures there are, with --frames or --fps.");
@@ -559,6 +570,7 @@ void run(Arguments& arguments, const geofx::plan::Division& division)
                                  !arguments.layers.folder.empty());
     for (const std::string& notice : map.notices())
         std::cerr << "osggeofx_render: " << notice << std::endl;
+    arguments.renderer.waits(false);
     if (geofx::print::isPrint(arguments.print, arguments.output, size))
     {
         print(arguments, size, map, camera.view(0), *scene, page ? &*page : nullptr, division);
@@ -585,6 +597,7 @@ void run(Arguments& arguments, const geofx::plan::Division& division)
 int main(int argc, char** argv)
 {
     const osgGeoFX::FreedMemory freed;
+    geofx::render::Deadline deadline("osggeofx_render", tookTooLong);
     Arguments arguments;
     CLI::App app(
         "Renders an OSG file or .geofx scene to a picture, or to one for each step of a camera path, "
@@ -598,9 +611,10 @@ int main(int argc, char** argv)
         if (!call) return exitCode;
         // CLI11 takes them from the last one on.
         app.parse(std::vector<std::string>(call->arguments.rbegin(), call->arguments.rend()));
-        run(arguments, call->units
-                           ? *call->units
-                           : geofx::plan::Division("osggeofx_render", call->arguments, arguments.plan));
+        run(arguments,
+            call->units ? *call->units
+                        : geofx::plan::Division("osggeofx_render", call->arguments, arguments.plan),
+            deadline);
     }
     catch (const CLI::Success& help)
     {

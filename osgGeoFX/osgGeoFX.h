@@ -11,6 +11,7 @@
 #include <osgGeoFX/paging/MemoryBudget.h>
 #include <osgGeoFX/paging/PagerMonitor.h>
 #include <osgGeoFX/paging/PluginFolder.h>
+#include <osgGeoFX/paging/ReadingFile.h>
 #include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/paging/TileGuard.h>

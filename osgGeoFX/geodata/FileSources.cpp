@@ -111,6 +111,8 @@ FileSources FileSources::of(const std::string& file)
     initialiseGdal();
     const GdalErrorScope quiet;
     FileSources result;
+    // Whoever reads it says so.
+    if (!faultOfArchive(file).empty()) return result;
     GDALDriverH driver =
         GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR, nullptr, nullptr);
     const std::string format = driver ? GDALGetDriverShortName(driver) : "";

@@ -261,9 +261,9 @@ public:
     OverlayRaster read(const MappingFrame& frame)
     {
         FrameTransformation transformation(crsOf(frame, _name), _name);
-        osg::ref_ptr<osg::Image> image = picture();
-        multiply(*image);
         OverlayRaster result;
+        result.layer = colored(picture());
+        osg::ref_ptr<osg::Image> image = result.layer->getImage();
         if (_options.window)
             image = warped(transformation, *_options.window, *image, result.corners);
         else
@@ -274,8 +274,7 @@ public:
             if (!isStraight(places, result.corners, *image))
                 image = warped(transformation, windowOf(places, *image), *image, result.corners);
         }
-        image->setFileName(KmlFolder::plain(_overlay.image));
-        result.layer = new DataLayer(image);
+        if (image != result.layer->getImage()) result.layer = layerOf(image);
         return result;
     }
 
@@ -289,28 +288,43 @@ private:
         return "The ground overlay \"" + overlay.name + "\"";
     }
 
-    osg::ref_ptr<osg::Image> picture() const
+    osg::ref_ptr<DataLayer> layerOf(const osg::ref_ptr<osg::Image>& image) const
     {
-        if (_raster) return _raster->picture(_options.maxSide);
-        osg::ref_ptr<osg::Image> image = new osg::Image;
-        image->allocateImage(plain, plain, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-        std::fill_n(image->data(), image->getTotalSizeInBytes(), static_cast<unsigned char>(255));
-        return image;
+        image->setFileName(KmlFolder::plain(_overlay.image));
+        return new DataLayer(image);
     }
 
-    /// The overlay's color; its alpha is left to the mapping.
-    void multiply(osg::Image& image) const
+    /// As it is in the file.
+    osg::ref_ptr<DataLayer> picture() const
+    {
+        if (!_raster)
+        {
+            const osg::ref_ptr<osg::Image> image = new osg::Image;
+            image->allocateImage(plain, plain, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+            std::fill_n(image->data(), image->getTotalSizeInBytes(), static_cast<unsigned char>(255));
+            return layerOf(image);
+        }
+        if (!_options.pictures) return layerOf(_raster->picture(_options.maxSide));
+        osg::ref_ptr<DataLayer>& known = (*_options.pictures)[{_overlay.image, _options.maxSide}];
+        if (!known) known = layerOf(_raster->picture(_options.maxSide));
+        return known;
+    }
+
+    /// With the overlay's color; its alpha is left to the mapping.
+    osg::ref_ptr<DataLayer> colored(const osg::ref_ptr<DataLayer>& picture) const
     {
         const osg::Vec4& color = _overlay.color;
-        if (color.r() == 1.0f && color.g() == 1.0f && color.b() == 1.0f) return;
-        unsigned char* texel = image.data();
-        for (unsigned int i = 0; i < image.getTotalSizeInBytes(); ++i)
+        if (color.r() == 1.0f && color.g() == 1.0f && color.b() == 1.0f) return picture;
+        const osg::ref_ptr<osg::Image> image = osg::clone(picture->getImage(), osg::CopyOp::DEEP_COPY_ALL);
+        unsigned char* texel = image->data();
+        for (unsigned int i = 0; i < image->getTotalSizeInBytes(); ++i)
         {
             const unsigned int channel = i % 4;
             if (channel < 3)
                 texel[i] = static_cast<unsigned char>(
                     std::lround(static_cast<float>(texel[i]) * std::clamp(color[channel], 0.0f, 1.0f)));
         }
+        return layerOf(image);
     }
 
     /// Whether the corners alone place all texels to a quarter of one. Those of a picture with few texels count as smaller, for its

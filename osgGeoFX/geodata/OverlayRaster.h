@@ -8,8 +8,10 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace osgGeoFX
 {
@@ -33,6 +35,9 @@ struct GroundReach
     @ingroup geodata */
 struct OSGGEOFXDATA_EXPORT OverlayRaster
 {
+    /// Pictures as they were read, by file and maxSide.
+    using Pictures = std::map<std::pair<std::string, int>, osg::ref_ptr<DataLayer>>;
+
     struct Options
     {
         int maxSide = 2048; ///< texels along the longer side at most, 1…16384
@@ -40,6 +45,9 @@ struct OSGGEOFXDATA_EXPORT OverlayRaster
         bool anyFormat = false;
         /// A part of the frame, to be resampled. Empty: all of the picture.
         std::optional<MappingRaster::Window> window = std::nullopt;
+        /// Those that were read before, which are not read again; grows. Where a picture stays as it is, its overlays share the layer.
+        /// Null: none are kept.
+        Pictures* pictures = nullptr;
     };
 
     osg::ref_ptr<DataLayer> layer;

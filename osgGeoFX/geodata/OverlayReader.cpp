@@ -20,7 +20,9 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <optional>
+#include <set>
 
 namespace osgGeoFX
 {
@@ -137,9 +139,16 @@ private:
 
     void add(GroundOverlay overlay)
     {
-        const osg::Image& image = *overlay.layer->getImage();
-        _texels += static_cast<double>(image.s()) * image.t();
+        count(*overlay.layer);
         overlays.push_back(std::move(overlay));
+    }
+
+    /// Several overlays may share a layer.
+    void count(const DataLayer& layer)
+    {
+        if (!_counted.insert(&layer).second) return;
+        const osg::Image& image = *layer.getImage();
+        _texels += static_cast<double>(image.s()) * image.t();
     }
 
     /// `isNone`: whether it has no overlays, and no other fault.
@@ -149,7 +158,11 @@ private:
         std::string error;
         if (!KmlOverlays::read(_file, _options.allowOutside, found, notices, error, &files, &isNone))
             throw BuildError(error);
-        const OverlayRaster::Options options{_options.maxSide, _options.allowOutside};
+        OverlayRaster::Options options{_options.maxSide, _options.allowOutside};
+        OverlayRaster::Pictures shared;
+        std::map<std::string, std::size_t> uses;
+        for (const KmlOverlay& each : found)
+            ++uses[each.image];
         std::size_t done = 0, leftOut = 0;
         std::string firstFault;
         for (const KmlOverlay& each : found)
@@ -164,6 +177,8 @@ private:
             }
             ++done;
             const std::size_t overlaysBefore = overlays.size(), framesBefore = frames.size();
+            OverlayRaster::Pictures* const own = uses[each.image] > 1 ? &shared : nullptr;
+            options.pictures = _options.pictures ? _options.pictures : own;
             try
             {
                 addKml(each, options);
@@ -205,6 +220,9 @@ private:
             overlay.corners = raster->corners;
         };
         addParts(*reach, "The ground overlay \"" + each.name + "\" of " + _file, overlay, take);
+        if (!options.pictures) return;
+        const auto kept = options.pictures->find({each.image, options.maxSide});
+        if (kept != options.pictures->end()) count(*kept->second);
     }
 
     using Take = std::function<void(const MappingFrame&, const std::optional<MappingRaster::Window>&)>;
@@ -434,6 +452,7 @@ private:
     }
 
     double _texels = 0.0;
+    std::set<const DataLayer*> _counted;                                               ///< in these
     std::vector<std::function<std::optional<osg::Vec2d>(const osg::Vec2d&)>> _placers; ///< of frames
 };
 

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/Export.h>
 #include <osgGeoFX/effect/LocalOrigin.h>
+#include <osgGeoFX/geodata/OverlayRaster.h>
 #include <osgGeoFX/mapping/GroundOverlay.h>
 
 #include <string>
@@ -37,8 +38,11 @@ public:
         bool paged = false;
         std::string layer; ///< of vector data: one layer, and a raster is refused; empty: all
         std::string style; ///< of vector data: an SLD file; empty: what TiledVectors says
-        /// Of a file's overlays together; those that come later are left out, with a notice. 2^27 texels have 512 MiB.
+        /// Of a file's overlays together, a picture that several of them show counted once; those that come later are left out, with a
+        /// notice. 2^27 texels have 512 MiB.
         double maxTexels = 134217728.0;
+        /// Of KML: the pictures that were read before, which are not read again; grows. Null: those of one file are shared.
+        OverlayRaster::Pictures* pictures = nullptr;
     };
 
     /// Of the terrain: a globe, or a plane with a coordinate system.

@@ -22,25 +22,11 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr GIntBig mostCache = 64 << 20; // bytes
-
-/// Keeps GDAL's cache small while any tiled raster lives.
-std::shared_ptr<GdalCacheLimit> smallCache()
-{
-    static std::mutex mutex;
-    static std::weak_ptr<GdalCacheLimit> limit;
-    const std::lock_guard<std::mutex> lock(mutex);
-    std::shared_ptr<GdalCacheLimit> result = limit.lock();
-    if (!result) result = std::make_shared<GdalCacheLimit>(std::min(mostCache, GDALGetCacheMax64()));
-    limit = result;
-    return result;
-}
-
 class Tiles final : public RasterTiles
 {
 public:
     Tiles(std::string file, const MappingFrame& frame, std::optional<DataLayer::Kind> wanted)
-        : _cache(smallCache()), _file(std::move(file)), _frame(frame), _crs(crsOf(frame, _file)),
+        : _cache(GdalCacheLimit::small()), _file(std::move(file)), _frame(frame), _crs(crsOf(frame, _file)),
           _wanted(wanted)
     {
         auto raster = std::make_unique<FrameRaster>(_file, _wanted);

@@ -322,6 +322,7 @@ osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double 
 {
     Parts& parts = *_parts;
     const auto start = Clock::now();
+    if (parts.options.waits) parts.options.waits(true);
     parts.look(view);
     parts.monitor->restart();
     osg::ref_ptr<osg::Image> image;
@@ -355,6 +356,7 @@ osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double 
     statistics.tilesLoaded = progress.tilesLoaded;
     statistics.bytesRead = progress.bytesRead;
     statistics.leastTriangles = parts.leastTriangles();
+    if (parts.options.waits) parts.options.waits(false);
     return image;
 }
 

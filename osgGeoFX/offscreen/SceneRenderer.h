@@ -12,6 +12,7 @@
 #include <osg/Matrixd>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -61,7 +62,9 @@ public:
         unsigned int samples = 0;  ///< multisampling; 0 is off
         bool cull = true;          ///< false: neither frustum nor small-feature culling
         bool waitForTiles = true;
-        double timeout = 600.0;      ///< seconds for each image
+        double timeout = 600.0; ///< seconds for each image
+        /// Called with true when the wait for an image begins, and with false when the image is there.
+        std::function<void(bool)> waits;
         bool countTriangles = false; ///< fill triangles, drawables and tilesDrawn; costs a little
         bool leastTriangles = false; ///< fill leastTriangles; reads the whole database first
         ImageCapture::Format format = ImageCapture::Format::Rgb; ///< Rgb16 draws with 16 bits, too

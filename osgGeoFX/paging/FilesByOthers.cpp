@@ -219,6 +219,25 @@ osg::ref_ptr<osg::Image> FilesByOthers::readPicture(const std::string& path, std
     return image;
 }
 
+osg::ref_ptr<osg::Image> FilesByOthers::sharedPicture(const std::string& path, std::string& reason)
+{
+    const std::string real = osgDB::getRealPath(path);
+    osg::ref_ptr<osg::Image> image;
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        const auto known = _pictures.find(real);
+        if (known != _pictures.end() && known->second.lock(image)) return image;
+    }
+    image = readPicture(path, reason);
+    const std::lock_guard<std::mutex> lock(_mutex);
+    // Those of tiles that went are forgotten.
+    constexpr std::size_t many = 1000;
+    for (auto each = _pictures.begin(); _pictures.size() > many && each != _pictures.end();)
+        each = each->second.valid() ? std::next(each) : _pictures.erase(each);
+    if (image) _pictures[real] = image;
+    return image;
+}
+
 ReadResult FilesByOthers::readNode(const std::string& file, const osgDB::Options* options)
 {
     if (RemoteFiles::isRemote(file))
@@ -304,7 +323,7 @@ ReadResult FilesByOthers::readImage(const std::string& file, const osgDB::Option
         const std::string path = osgDB::findDataFile(file, options);
         if (path.empty()) return ReadResult::FILE_NOT_FOUND;
         reason = faultOfPlace(path);
-        if (reason.empty()) image = readPicture(path, reason);
+        if (reason.empty()) image = sharedPicture(path, reason);
     }
     if (image) return ReadResult(image.get());
     return ReadResult(std::move(reason));

@@ -5,10 +5,13 @@
 #include <osgGeoFX/Export.h>
 
 #include <osg/Image>
+#include <osg/observer_ptr>
 #include <osgDB/Callbacks>
 #include <osgDB/Options>
 #include <osgDB/ReaderWriter>
 
+#include <map>
+#include <mutex>
 #include <string>
 
 namespace osgGeoFX
@@ -24,7 +27,7 @@ namespace osgGeoFX
     All files must lie in a folder or below it. A database may hold objects of the libraries osg, osgAnimation, osgFX,
     osgParticle, osgShadow, osgSim, osgUtil and osgGeoFX. Scripts, image sequences (osg::ImageSequence) and objects of other
     libraries are refused, and a file with them as a whole. A picture has up to 256 MiB of pixels, and a database file up to 256 MiB
-    when it is unpacked. A picture's header tells so before its pixels are unpacked; unpacking a database file ends there.
+    when it is unpacked. A picture file that several objects name is read once, and they share it. A picture's header tells so before its pixels are unpacked; unpacking a database file ends there.
 
     As a ReadFileCallback it stands in the options that OSG's readers pass on, so it meets what these files name in their turn.
     Pictures within files go the same way (see Gate). A refusal is a ReadResult with a reason that is a part of a sentence.
@@ -88,7 +91,12 @@ protected:
     ~FilesByOthers() override;
 
 private:
+    /// As long as it lives, the same one.
+    osg::ref_ptr<osg::Image> sharedPicture(const std::string& path, std::string& reason);
+
     const std::string _folder;
+    std::mutex _mutex;
+    std::map<std::string, osg::observer_ptr<osg::Image>> _pictures; ///< by path
 };
 
 } // namespace osgGeoFX

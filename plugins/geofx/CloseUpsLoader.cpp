@@ -36,7 +36,7 @@ private:
     void loadData(const SceneSurfaceData& scene)
     {
         SurfaceRequest request;
-        request.maxSide = scene.maxSide;
+        request.maxSide = sideOf(scene);
         request.radius = scene.radius;
         request.data = new SurfaceData;
         request.frame = _terrain.frame();
@@ -55,7 +55,23 @@ private:
                 SceneTerrain::ask(surface.place, "surfaceData", &request, "leave <surfaceData> out");
             if (!request.done) fail(surface.place, fault);
         }
+        for (int i = 0; i < request.data->getNumLayers(); ++i)
+            _terrain.count(request.data->getLayerImage(i));
         _closeUps.effect->setSurfaceData(request.data);
+    }
+
+    int sideOf(const SceneSurfaceData& scene) const
+    {
+        // Four floats in each layer, and while a DEM is read some more.
+        constexpr double texel = 16.0, ofDem = 5.0, more = 3.0;
+        double layers = more;
+        const ScenePath* file = nullptr;
+        for (const SceneSurface& surface : scene.surfaces)
+        {
+            layers += surface.source == SceneSurface::DEM ? ofDem : 1.0;
+            if (!file && surface.source != SceneSurface::DERIVED) file = &surface.file;
+        }
+        return file ? _terrain.sideWithin(*file, scene.maxSide, layers * texel) : scene.maxSide;
     }
 
     /// About the middle of the edges.

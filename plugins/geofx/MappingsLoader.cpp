@@ -11,9 +11,11 @@
 #include <osgGeoFX/viewer/EffectKinds.h>
 
 #include <osg/Math>
+#include <osgDB/FileNameUtils>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 namespace osgGeoFX
@@ -123,19 +125,31 @@ private:
         mapping.mapping->setCenter(placeOf(mapping.place, world));
     }
 
-    void place(const SceneMapping& mapping, const SceneMapping::Raster& raster)
+    /// The same for all mappings of the effect that show a raster.
+    const MappingRasterRequest& read(const ScenePlace& place, const SceneMapping::Raster& raster)
     {
-        MappingRasterRequest request;
+        const auto [known, isNew] = _rasters.emplace(
+            std::make_tuple(osgDB::getRealPath(raster.file.path), raster.kind, raster.maxSide),
+            MappingRasterRequest());
+        MappingRasterRequest& request = known->second;
+        if (!isNew) return request;
         request.file = raster.file.path;
         request.options.kind = raster.kind;
-        request.options.maxSide = raster.maxSide;
+        request.options.maxSide = _terrain.sideWithin(raster.file, raster.maxSide);
         request.hasOrigin = _hasOrigin;
         request.frame = _terrain.frame();
         request.frame.origin = _effect.getLocalOrigin();
         const std::string fault =
-            SceneTerrain::ask(mapping.place, "mappingRaster", &request, "use a <layer> with a <mapping>");
-        if (!request.raster.layer) fail(mapping.place, fault);
+            SceneTerrain::ask(place, "mappingRaster", &request, "use a <layer> with a <mapping>");
+        if (!request.raster.layer) fail(place, fault);
         _effect.setLocalOrigin(request.frame.origin);
+        _terrain.count(request.raster.layer->getImage());
+        return request;
+    }
+
+    void place(const SceneMapping& mapping, const SceneMapping::Raster& raster)
+    {
+        const MappingRasterRequest& request = read(mapping.place, raster);
         if (!request.raster.apply(*mapping.mapping))
             fail(mapping.place, "the raster covers no area on the ground; check it with gdalinfo.");
         const bool plainColors =
@@ -150,7 +164,8 @@ private:
         request.file = each.file.path + (each.variable.empty() ? "" : ":" + each.variable);
         request.globe = _ellipsoid != nullptr;
         request.wkt = _terrain.frame().wkt;
-        request.maxSide = each.maxSide;
+        // Some steps are in memory at a time.
+        request.maxSide = _terrain.sideWithin(each.file, each.maxSide, 64.0);
         request.moves = !_hasOrigin;
         request.origin = _effect.getLocalOrigin();
         const std::string fault =
@@ -181,6 +196,7 @@ private:
         sequence->update();
         sequence->setWaiting(false);
         if (!sequence->fault().empty()) fail(each.place, sequence->fault());
+        _terrain.count(sequence->getLayer()->getImage());
     }
 
     void add(const SceneOverlay& overlay)
@@ -189,7 +205,9 @@ private:
         request.file = overlay.file.path;
         request.globe = _ellipsoid != nullptr;
         request.wkt = _terrain.frame().wkt;
-        request.maxSide = overlay.maxSide;
+        request.maxSide = _terrain.sideWithin(overlay.file, overlay.maxSide);
+        request.maxTexels = _terrain.texelsLeft();
+        request.pictures = _terrain.overlayPictures();
         request.layer = overlay.layer;
         if (overlay.style) request.style = overlay.style->path;
         if (_hasOrigin) request.frames.push_back(_effect.getLocalOrigin());
@@ -198,6 +216,11 @@ private:
         if (request.overlays.empty()) fail(overlay.place, fault);
         for (const std::string& notice : request.notices)
             warn(overlay.place, notice);
+        for (const GroundOverlay& each : request.overlays)
+            if (each.layer) _terrain.count(each.layer->getImage());
+        if (request.pictures)
+            for (const auto& [key, layer] : *request.pictures)
+                _terrain.count(layer->getImage());
         if (request.frames.size() > 1)
             fail(overlay.place,
                  "its rasters lie too far from the effect's origin, or from each other; give them a "
@@ -293,6 +316,7 @@ private:
     EffectScene& _node;
     const osg::EllipsoidModel* _ellipsoid;
     bool _hasOrigin;
+    std::map<std::tuple<std::string, std::optional<DataLayer::Kind>, int>, MappingRasterRequest> _rasters;
 };
 
 } // namespace

@@ -4,6 +4,7 @@
 
 #include "SceneLoading.h"
 
+#include <osgGeoFX/geodata/OverlayRaster.h>
 #include <osgGeoFX/mapping/GroundOverlay.h>
 #include <osgGeoFX/mapping/LayerSequence.h>
 
@@ -29,7 +30,9 @@ struct SceneOverlaysRequest
     std::string colors;
     std::string layer, style; ///< of vector data
     int maxSide = 0;
-    std::vector<LocalOrigin> frames; ///< those that there are; grows
+    double maxTexels = 0.0;                      ///< of KML's pictures together
+    OverlayRaster::Pictures* pictures = nullptr; ///< of the scene's KML files
+    std::vector<LocalOrigin> frames;             ///< those that there are; grows
     std::vector<GroundOverlay> overlays;
     std::vector<std::string> notices;
 };

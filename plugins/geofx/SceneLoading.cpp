@@ -4,6 +4,7 @@
 
 #include "MappingsLoader.h"
 
+#include <osgGeoFX/geodata/OverlayReader.h>
 #include <osgGeoFX/paging/FilesByOthers.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/raster/ColorRampFile.h>
@@ -60,6 +61,13 @@ osg::ref_ptr<osg::Image> readByName(const std::string& file, std::string& reason
     return nullptr;
 }
 
+/// All that a scene by others unpacks, bytes.
+constexpr double mostBytes = 512.0 * 1024.0 * 1024.0;
+
+const char* const tooMany = "the scene's pictures take more than 512 MiB together when they are unpacked; "
+                            "name fewer or smaller ones; or, if you trust the scene, start the program with "
+                            "--allow-outside, or give OSG the option string \"allowOutside\".";
+
 osg::ref_ptr<osg::Image> rasterOf(const ScenePath& file, DataLayer::Kind kind, int maxSide,
                                   std::string& reason)
 {
@@ -97,10 +105,31 @@ osg::ref_ptr<osg::Image> SceneTerrain::pictureOf(const ScenePath& file, DataLaye
     return known->second;
 }
 
+double SceneTerrain::texelsLeft() const
+{
+    return _anywhere ? OverlayReader::Options().maxTexels : std::max(0.0, mostBytes - _pictureBytes) / 4.0;
+}
+
+int SceneTerrain::sideWithin(const ScenePath& file, int maxSide, double bytes) const
+{
+    if (_anywhere) return maxSide;
+    const int side = static_cast<int>(std::sqrt(4.0 * texelsLeft() / bytes));
+    if (side >= maxSide) return maxSide;
+    if (side < 1) fail(file.place, tooMany);
+    warn(file.place, "\"" + file.path + "\" has no more than " + std::to_string(side) +
+                         " texels along a side, since the scene's pictures take up to 512 MiB together; name "
+                         "fewer or smaller "
+                         "ones.");
+    return side;
+}
+
+void SceneTerrain::count(const osg::Image* image)
+{
+    if (image && _counted.insert(image).second) _pictureBytes += image->getTotalSizeInBytes();
+}
+
 osg::ref_ptr<osg::Image> SceneTerrain::readPicture(const ScenePath& file, DataLayer::Kind kind, int maxSide)
 {
-    // All that a scene by others unpacks, bytes.
-    constexpr double mostBytes = 512.0 * 1024.0 * 1024.0;
     PictureRequest look;
     look.file = file.path;
     look.look = true;
@@ -111,13 +140,9 @@ osg::ref_ptr<osg::Image> SceneTerrain::readPicture(const ScenePath& file, DataLa
     const bool isHuge = pixels > mostPixels;
     if (!_anywhere && pixels > 0.0)
     {
-        const double shrink = std::sqrt(std::max(0.0, mostBytes - _pictureBytes) / (4.0 * pixels));
+        const double shrink = std::sqrt(texelsLeft() / pixels);
         maxSide = std::min(maxSide, static_cast<int>(shrink * std::max(look.width, look.height)));
     }
-    const std::string tooMany =
-        "the scene's pictures take more than 512 MiB together when they are unpacked; "
-        "name fewer or smaller ones; or, if you trust the scene, start the program with "
-        "--allow-outside, or give OSG the option string \"allowOutside\".";
     if (maxSide < 1) fail(file.place, tooMany);
     std::string reason;
     std::string rasterReason;
@@ -133,7 +158,7 @@ osg::ref_ptr<osg::Image> SceneTerrain::readPicture(const ScenePath& file, DataLa
     if (!image && rasterReason.empty()) image = rasterOf(file, kind, maxSide, rasterReason);
     if (image)
     {
-        _pictureBytes += image->getTotalSizeInBytes();
+        count(image);
         if (!_anywhere && _pictureBytes > mostBytes) fail(file.place, tooMany);
         return image;
     }

@@ -5,12 +5,14 @@
 #include "SceneFile.h"
 
 #include <osgGeoFX/geodata/MappingRaster.h>
+#include <osgGeoFX/geodata/OverlayRaster.h>
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/scene/EffectScene.h>
 
 #include <osg/Image>
 
 #include <map>
+#include <set>
 #include <tuple>
 
 namespace osgGeoFX
@@ -59,6 +61,15 @@ public:
         pictures of a scene take up to 512 MiB. */
     osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file, DataLayer::Kind kind = DataLayer::COLOR,
                                        int maxSide = 16384);
+    /// How many texels a raster of the scene may have along a side, `maxSide` at most, so that the pictures stay within their limit;
+    /// a warning tells of fewer. `bytes`: of a texel, while the raster is read. Throws SceneFailure where the limit is reached.
+    int sideWithin(const ScenePath& file, int maxSide, double bytes = 16.0) const;
+    /// Counts a picture that others have read, once.
+    void count(const osg::Image* image);
+    /// How many texels of colors the pictures may still have; very many where the program trusts the scene.
+    double texelsLeft() const;
+    /// The pictures of KML files that are shared; null where the program trusts the scene.
+    OverlayRaster::Pictures* overlayPictures() { return _anywhere ? nullptr : &_overlayPictures; }
 
     const osg::Node& node() const { return _terrain; }
     /// Null on a projected terrain.
@@ -93,6 +104,8 @@ private:
     const bool _anywhere;
     osg::ref_ptr<Georeference> _reference;
     std::map<std::tuple<std::string, DataLayer::Kind, int>, osg::ref_ptr<osg::Image>> _pictures;
+    OverlayRaster::Pictures _overlayPictures;
+    std::set<osg::ref_ptr<const osg::Image>> _counted;
     double _pictureBytes = 0.0;
 };
 

@@ -5,6 +5,7 @@
 #include "SceneFile.h"
 #include "SceneSchema.h"
 
+#include <libxml/SAX2.h>
 #include <libxml/parser.h>
 #include <libxml/xmlschemas.h>
 #include <libxml/xmlschemastypes.h>
@@ -221,6 +222,16 @@ public:
                           ".");
     }
 
+    /// libxml2's parser calls this before it reads what a document type declares: entities that grow, and defaults.
+    static void typed(void* data, const xmlChar*, const xmlChar*, const xmlChar*)
+    {
+        auto* parser = static_cast<xmlParserCtxt*>(data);
+        static_cast<Findings*>(parser->_private)
+            ->add(xmlSAX2GetLineNumber(parser), "geofx",
+                  "a document type is declared; expected: no <!DOCTYPE>.");
+        xmlStopParser(parser);
+    }
+
     /// libxml2's validator calls this.
     static void invalid(void* data, xmlErrorPtr error) { static_cast<Findings*>(data)->translate(*error); }
 
@@ -391,6 +402,7 @@ XmlDocument readSceneXml(const std::string& text, const std::string& file, Scene
     xmlParserCtxt* parser = xmlNewParserCtxt();
     parser->_private = &findings;
     parser->sax->serror = &Findings::malformed;
+    parser->sax->internalSubset = &Findings::typed;
     XmlDocument document(readMemory(parser, text.data(), text.size()));
     xmlFreeParserCtxt(parser);
     xmlNode* root = document ? xmlDocGetRootElement(document.get()) : nullptr;
@@ -408,9 +420,7 @@ XmlDocument readSceneXml(const std::string& text, const std::string& file, Scene
     }
 
     const std::string version = attributeOf(root, "version");
-    if (xmlGetIntSubset(document.get()))
-        findings.add(root, "a document type is declared; expected: no <!DOCTYPE>.");
-    else if (is(root, "geofx") && !root->ns && !version.empty() && version != "1")
+    if (is(root, "geofx") && !root->ns && !version.empty() && version != "1")
         findings.add(root, "version=\"" + version + "\" is not known to this osgGeoFX; expected: " +
                                findings.schema.expectation("geofx", "version") +
                                ". A newer osgGeoFX may read this scene.");

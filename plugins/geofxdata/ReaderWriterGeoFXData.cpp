@@ -206,6 +206,11 @@ private:
             how.allowOutside = request->allowOutside;
             how.paged = request->paged;
         }
+        else
+        {
+            how.maxTexels = request->maxTexels;
+            how.pictures = request->pictures;
+        }
         how.colors = request->colors;
         how.maxSide = request->maxSide;
         how.layer = request->layer;

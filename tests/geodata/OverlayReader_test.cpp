@@ -737,8 +737,10 @@ TEST_F(OverlayReaderTest, ALargeMapOfTheWorldHasTiles)
 TEST_F(OverlayReaderTest, WhatDoesNotFitIsLeftOutAndTold)
 {
     std::string features;
-    for (int i = 0; i < 6; ++i)
-        features += groundOverlay("files/ramp.png", latLonBox(7.0, 45.0, 7.01, 45.006));
+    // Each has a picture of its own for its color.
+    for (int i = 1; i <= 6; ++i)
+        features += groundOverlay("files/ramp.png", latLonBox(7.0, 45.0, 7.01, 45.006),
+                                  "<color>ff00000" + std::to_string(i) + "</color>");
     OverlayReader::Options options;
     options.maxTexels = 2.5 * 256 * 256;
     ASSERT_TRUE(read(archive(features), options));

@@ -298,7 +298,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "x.geofx:2: <terrain>: ", "Opening and ending tag mismatch: terrain line 2 and geofx"},
         Mistake{"DocumentType",
                 "<!DOCTYPE geofx [<!ENTITY a 'b'>]>\n<geofx version='1'>" + terrain + "</geofx>",
-                "x.geofx:2: <geofx>: ", "expected: no <!DOCTYPE>."},
+                "x.geofx:1: <geofx>: ", "expected: no <!DOCTYPE>."},
         Mistake{"OtherRoot", "<scene/>", "x.geofx:1: <scene>: ", "expected: <geofx version=\"1\">"},
         Mistake{"Namespace", "<geofx xmlns='a' version='1'/>", "x.geofx:1: <geofx>: ", "without a namespace"},
         Mistake{"NoVersion", "<geofx>" + terrain + "</geofx>",

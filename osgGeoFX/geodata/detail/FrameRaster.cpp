@@ -5,6 +5,7 @@
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/CoordinateText.h>
 #include <osgGeoFX/mapping/LayerWords.h>
+#include <osgGeoFX/paging/ReadingFile.h>
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
@@ -28,6 +29,9 @@ namespace
 {
 
 using Transform = std::array<double, 6>;
+
+/// That are read for one picture; some minutes.
+constexpr double mostRead = 1e10;
 
 CPLStringList listOf(const std::vector<std::string>& arguments)
 {
@@ -191,6 +195,7 @@ FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted
 {
     static const char* const plainPictures[] = {"PNG", "JPEG", "GIF",         "GTiff",
                                                 "BMP", "WEBP", "JP2OpenJPEG", nullptr};
+    const ReadingFile reading(_file);
     GdalErrorScope errors;
     if (formats == PLAIN_PICTURES)
     {
@@ -280,15 +285,8 @@ void FrameRaster::checkSize() const
                           format != "WEBP" && format != "JPEG";
     const double columns = top().GetRasterXSize();
     const double rows = top().GetRasterYSize();
-    // A block is decoded at once, also where a few of its pixels are wanted.
-    constexpr double largestBlock = 536870912.0; // bytes
-    int blockColumns = 0;
-    int blockRows = 0;
-    band().GetBlockSize(&blockColumns, &blockRows);
-    if (static_cast<double>(blockColumns) * blockRows * GDALGetDataTypeSizeBytes(band().GetRasterDataType()) >
-        largestBlock)
-        fail("its pixels lie in blocks of " + std::to_string(blockColumns) + " × " +
-             std::to_string(blockRows) + ", each of which is read at once; convert it to a tiled GeoTIFF");
+    const std::string fault = faultOfBlocks(top());
+    if (!fault.empty()) fail(fault);
     if (hasTiles || columns * rows <= mostPixels || band().GetOverviewCount() > 0) return;
     fail("it says that it has " + std::to_string(top().GetRasterXSize()) + " × " +
          std::to_string(top().GetRasterYSize()) + " pixels, which a " + format +
@@ -342,10 +340,19 @@ void FrameRaster::checkOverviews() const
     double coarsest = 1.0;
     for (const double factor : overviews())
         coarsest = std::max(coarsest, factor);
-    if (size().x() * size().y() > mostPixels * coarsest * coarsest)
-        fail("it has no overviews that are small enough, so that a picture of all of it would take all of "
-             "its pixels; make them with gdaladdo -r average \"" +
-             _file + "\" 4 16 64 256");
+    if (size().x() * size().y() > mostPixels * coarsest * coarsest) failForOverviews();
+}
+
+void FrameRaster::failForOverviews() const
+{
+    fail("it has no overviews that are small enough, so that a picture of all of it would take all of "
+         "its pixels; make them with gdaladdo -r average \"" +
+         _file + "\" 4 16 64 256");
+}
+
+void FrameRaster::checkPixels(double pixels) const
+{
+    if (pixels > mostRead) failForOverviews();
 }
 
 void FrameRaster::fail(const std::string& what) const
@@ -432,6 +439,15 @@ DatasetPtr FrameRaster::warped(const FrameCrs& crs, const osg::Vec2d& low, const
     else
         arguments.insert(arguments.end(), {"-ot", "Float64", "-dstnodata", "nan"});
     if (_hasMask) arguments.emplace_back("-srcalpha");
+    const osg::Vec2d all = size();
+    if (all.x() * all.y() > mostRead)
+    {
+        const Extent extent = this->extent(crs);
+        const osg::Vec2d whole = extent.high - extent.low;
+        checkPixels(all.x() * std::min(1.0, (high.x() - low.x()) / whole.x()) * all.y() *
+                    std::min(1.0, (high.y() - low.y()) / whole.y()));
+    }
+    const ReadingFile reading(_file);
     const WarpErrors errors;
     GDALWarpAppOptions* options = GDALWarpAppOptionsNew(listOf(arguments).List(), nullptr);
     GDALDatasetH source = GDALDataset::ToHandle(&top());
@@ -517,6 +533,10 @@ osg::ref_ptr<osg::Image> FrameRaster::picture(int maxSide) const
     const double share = std::min(1.0, maxSide / std::max(all.x(), all.y()));
     const int width = std::max(1, static_cast<int>(std::lround(all.x() * share)));
     const int height = std::max(1, static_cast<int>(std::lround(all.y() * share)));
+    const int overview = overviewFor(1.0 / share);
+    const double factor = overview < 0 ? 1.0 : overviews()[static_cast<std::size_t>(overview)];
+    checkPixels(all.x() * all.y() / (factor * factor));
+    const ReadingFile reading(_file);
     GDALRasterIOExtraArg how;
     INIT_RASTERIO_EXTRA_ARG(how);
     if (kind != DataLayer::CLASS && !_palette) how.eResampleAlg = GRIORA_Average;

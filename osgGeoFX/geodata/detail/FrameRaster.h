@@ -138,12 +138,17 @@ private:
     /// Files after the CF conventions that have degrees along their axes need not name a datum. It is taken to be WGS 84.
     void assumeDegrees();
     void checkPlace() const;
+    /// Fails where so many of the file's pixels, of the overview that is taken, would have to be read that it takes too long.
+    void checkPixels(double pixels) const;
+    [[noreturn]] void failForOverviews() const;
     void checkSize() const;
     void readNumbers(osg::Image& image, GDALRasterIOExtraArg& how) const;
     void translate(Arguments arguments);
     void makeColors();
     void makeValues();
 
+    /// GDAL would keep a part of the machine's memory otherwise.
+    const std::shared_ptr<GdalCacheLimit> _cache = GdalCacheLimit::small();
     std::string _file;
     DatasetChain _chain;
     bool _palette = false;

@@ -3,9 +3,16 @@
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/paging/ReadingFile.h>
 
 #include <cpl_error.h>
+#include <cpl_vsi.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
 #include <mutex>
 
 namespace osgGeoFX
@@ -51,6 +58,18 @@ void CPL_STDCALL GdalErrorScope::handle(CPLErr severity, CPLErrorNum, const char
     if (severity >= CE_Failure && scope->_message.empty()) scope->_message = text;
 }
 
+std::shared_ptr<GdalCacheLimit> GdalCacheLimit::small()
+{
+    constexpr GIntBig most = 64 << 20; // bytes
+    static std::mutex mutex;
+    static std::weak_ptr<GdalCacheLimit> limit;
+    const std::lock_guard<std::mutex> lock(mutex);
+    std::shared_ptr<GdalCacheLimit> result = limit.lock();
+    if (!result) result = std::make_shared<GdalCacheLimit>(std::min(most, GDALGetCacheMax64()));
+    limit = result;
+    return result;
+}
+
 OGRSpatialReference gisOrder(OGRSpatialReference srs)
 {
     srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -67,6 +86,42 @@ TransformationPtr createTransformation(const OGRSpatialReference& from, const OG
                          to.GetName() + "\" (" + errors.message() +
                          "); reproject the file with gdalwarp first.");
     return result;
+}
+
+std::string faultOfBlocks(GDALDataset& raster)
+{
+    constexpr double most = 268435456.0; // bytes
+    GDALRasterBand& band = *raster.GetRasterBand(1);
+    int columns = 0;
+    int rows = 0;
+    band.GetBlockSize(&columns, &rows);
+    const char* const order = raster.GetMetadataItem("INTERLEAVE", "IMAGE_STRUCTURE");
+    const int bands = order && EQUAL(order, "PIXEL") ? raster.GetRasterCount() : 1;
+    if (static_cast<double>(columns) * rows * GDALGetDataTypeSizeBytes(band.GetRasterDataType()) * bands <=
+        most)
+        return {};
+    return "its pixels lie in blocks of " + std::to_string(columns) + " × " + std::to_string(rows) +
+           ", each of which is read at once; convert it to a tiled GeoTIFF";
+}
+
+std::string faultOfArchive(const std::string& file)
+{
+    constexpr double harmless = 8.0 * 1024.0 * 1024.0; // bytes
+    constexpr double most = 100.0;                     // times the archive's own
+    std::ifstream stream(file, std::ios::binary);
+    char start[2] = {};
+    if (!stream.read(start, sizeof(start)) || start[0] != 'P' || start[1] != 'K') return {};
+    std::error_code fault;
+    const auto packed = static_cast<double>(std::filesystem::file_size(file, fault));
+    const GdalErrorScope errors;
+    const std::unique_ptr<VSIDIR, void (*)(VSIDIR*)> folder(
+        VSIOpenDir(("/vsizip/{" + file + "}").c_str(), -1, nullptr), &VSICloseDir);
+    double unpacked = 0.0;
+    while (const VSIDIREntry* const entry = folder ? VSIGetNextDirEntry(folder.get()) : nullptr)
+        unpacked += static_cast<double>(entry->nSize);
+    if (fault || unpacked <= std::max(harmless, most * packed)) return {};
+    return "it unpacks to " + std::to_string(std::lround(unpacked / 1048576.0)) +
+           " MiB, more than a hundred times its own size; unpack it with unzip, and name a file of it";
 }
 
 namespace
@@ -102,6 +157,9 @@ void placeCsv(GDALDataset& dataset, const std::string& file)
 
 DatasetPtr openVectors(const std::string& file)
 {
+    const ReadingFile reading(file);
+    const std::string fault = faultOfArchive(file);
+    if (!fault.empty()) throw BuildError(file + ": " + fault + ".");
     const GdalErrorScope errors;
     GDALDriverH const driver = GDALIdentifyDriverEx(file.c_str(), GDAL_OF_VECTOR, nullptr, nullptr);
     const bool isCsv = driver && EQUAL(GDALGetDriverShortName(driver), "CSV");
@@ -140,6 +198,7 @@ void forEachFeature(
         throw BuildError(file + ": its layer " + std::string(layer.GetName()) +
                          " has no coordinate reference system; name it with ogr2ogr -a_srs EPSG:N.");
     const TransformationPtr toTarget = createTransformation(gisOrder(*srs), gisOrder(target), file);
+    const ReadingFile reading(file);
     const double part = srs->IsGeographic() ? 0.01 : 1000.0 / srs->GetLinearUnits();
     const GdalErrorScope errors;
     for (const auto& feature : layer)

@@ -95,6 +95,9 @@ public:
     GdalCacheLimit(const GdalCacheLimit&) = delete;
     GdalCacheLimit& operator=(const GdalCacheLimit&) = delete;
 
+    /// 64 MiB as long as one of these lives. Thread-safe.
+    static std::shared_ptr<GdalCacheLimit> small();
+
 private:
     GIntBig _before;
 };
@@ -105,6 +108,14 @@ OGRSpatialReference gisOrder(OGRSpatialReference srs);
 /// Transformation between two CRSs; throws BuildError, naming `file`, where PROJ has none.
 TransformationPtr createTransformation(const OGRSpatialReference& from, const OGRSpatialReference& to,
                                        const std::string& file);
+
+/// Why a raster's blocks cannot be read, as a part of a sentence; empty if they can. GDAL unpacks a block at once, also where a few of
+/// its pixels are wanted.
+std::string faultOfBlocks(GDALDataset& raster);
+
+/// Why an archive (KMZ and other files of zip) is not unpacked, as a part of a sentence: what is in it is far larger than it. Empty if it
+/// may be unpacked, and for other files. GDAL's drivers take many times the unpacked bytes, and unpack archives as soon as they open them.
+std::string faultOfArchive(const std::string& file);
 
 /** Opens vector data; throws BuildError where it is none.
 

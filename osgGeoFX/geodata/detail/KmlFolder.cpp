@@ -89,6 +89,7 @@ std::string asItIsCalled(const std::string& path)
 
 std::string documentOfKmz(const std::string& file)
 {
+    if (!faultOfArchive(file).empty()) return {};
     const GdalErrorScope errors;
     const CPLStringList names(VSIReadDirRecursive(insideOf(file).c_str()));
     std::string best;
@@ -110,6 +111,8 @@ KmlFolder::KmlFolder(const std::string& file, bool allowOutside) : _allowOutside
         throw BuildError(file + ": the file does not exist; correct its name.");
     if (extensionOf(file) == ".kmz")
     {
+        const std::string packed = faultOfArchive(real);
+        if (!packed.empty()) throw BuildError(file + ": " + packed + ".");
         _root = insideOf(real);
         _document = documentOfKmz(real);
         if (_document.empty())

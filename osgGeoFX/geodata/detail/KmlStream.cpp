@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/detail/KmlFolder.h>
+#include <osgGeoFX/paging/ReadingFile.h>
 
 #include <cpl_vsi.h>
 #include <libxml/xmlreader.h>
@@ -97,6 +98,7 @@ void KmlStream::parse()
     const std::string name = KmlFolder::plain(_document);
     const std::unique_ptr<VSILFILE, FileCloser> file(VSIFOpenL(_document.c_str(), "rb"));
     if (!file) throw BuildError(name + ": the file cannot be read; check its name and rights.");
+    const ReadingFile reading(name);
     Source source;
     source.file = file.get();
     const std::unique_ptr<xmlTextReader, ReaderCloser> reader(

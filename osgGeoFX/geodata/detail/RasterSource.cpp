@@ -6,6 +6,7 @@
 #include <osgGeoFX/geodata/detail/Lengths.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/paging/ReadingFile.h>
 
 #include <cpl_string.h>
 #include <gdal_alg.h>
@@ -74,6 +75,7 @@ RasterSource::RasterSource(const std::string& file, RasterKind kind) : _file(fil
     if (VSI_ISREG(status.st_mode) && status.st_size == 0) fail("the file is empty; fetch or export it again");
 
     {
+        const ReadingFile reading(file);
         GdalErrorScope errors;
         if (!_chain.add(DatasetPtr(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR))))
             fail("it is not a raster that GDAL can read (" + errors.message() +
@@ -81,6 +83,8 @@ RasterSource::RasterSource(const std::string& file, RasterKind kind) : _file(fil
     }
     if (_chain.top().GetRasterCount() == 0)
         fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
+    const std::string fault = faultOfBlocks(_chain.top());
+    if (!fault.empty()) fail(fault);
     openAs(kind);
 }
 
@@ -342,6 +346,7 @@ Footprint RasterSource::footprint(const GridCrs& crs) const
 void RasterSource::warp(const GridCrs& crs, const Lattice& lattice, const WarpRequest& request)
 {
     GDALDataset& source = _chain.top();
+    const ReadingFile reading(_file);
     GdalErrorScope errors;
 
     DatasetPtr target(GetGDALDriverManager()->GetDriverByName("MEM")->Create(

@@ -10,6 +10,7 @@
 #include <osgGeoFX/geodata/detail/OgrStyle.h>
 #include <osgGeoFX/geodata/detail/RingCut.h>
 #include <osgGeoFX/geodata/detail/SldStyle.h>
+#include <osgGeoFX/paging/ReadingFile.h>
 
 #include <osg/Math>
 #include <osg/Vec3d>
@@ -67,6 +68,7 @@ public:
 
     VectorShapes read()
     {
+        const ReadingFile reading(_result.file);
         const DatasetPtr dataset = openVectors(_result.file);
         _dataset = dataset.get();
         forEachLayer(*dataset, _options.layer, _result.file, [this](OGRLayer& layer) { readLayer(layer); });
@@ -494,6 +496,8 @@ bool VectorShapes::isVectors(const std::string& file)
 {
     initialiseGdal();
     const GdalErrorScope quiet;
+    const ReadingFile reading(file);
+    if (!faultOfArchive(file).empty()) return false;
     if (DatasetPtr(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER))) return false;
     const DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
     return dataset && dataset->GetLayerCount() > 0;
