@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/geodata/FileSources.h>
 
+#include <osgGeoFX/geodata/detail/DataGuard.h>
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
+#include <osgGeoFX/paging/FilesByOthers.h>
 
 #include <cpl_minixml.h>
 #include <cpl_string.h>
@@ -108,6 +110,8 @@ Xml virtualFile(const std::string& file)
 
 FileSources FileSources::of(const std::string& file)
 {
+    // Whatever the file holds, nothing is fetched.
+    const FilesByOthers::Scope scope(FilesByOthers::Scope::folder().value_or("/"));
     initialiseGdal();
     const GdalErrorScope quiet;
     FileSources result;
@@ -128,19 +132,19 @@ FileSources FileSources::of(const std::string& file)
         return result;
     }
     if (!driver) return result;
-    // Whatever the file holds, nothing is fetched.
-    CPLSetThreadLocalConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none");
+    const DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR));
+    const CPLStringList files(dataset ? dataset->GetFileList() : nullptr);
+    for (int i = 0; i < files.size(); ++i)
     {
-        const DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR));
-        const CPLStringList files(dataset ? dataset->GetFileList() : nullptr);
-        for (int i = 0; i < files.size(); ++i)
-        {
-            const std::string name = complete(files[i], false, file);
-            if (name != file) result.files.push_back(name);
-        }
+        const std::string name = complete(files[i], false, file);
+        if (name != file) result.files.push_back(name);
     }
-    CPLSetThreadLocalConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", nullptr);
     return result;
+}
+
+bool FileSources::isFormatByOthers(const std::string& format)
+{
+    return osgGeoFX::isFormatByOthers(format);
 }
 
 } // namespace osgGeoFX

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/detail/TimeSteps.h>
+#include <osgGeoFX/paging/FilesByOthers.h>
 
 #include <osg/CoordinateSystemNode>
 #include <osg/Math>
@@ -57,6 +58,7 @@ public:
     std::optional<LayerSource> source() const override { return _source; }
     osg::ref_ptr<osg::Image> read(std::size_t step, std::string& error) override
     {
+        const FilesByOthers::Scope scope(_folder);
         const std::lock_guard<std::mutex> lock(_mutex);
         try
         {
@@ -84,6 +86,7 @@ private:
         return raster.image(_crs, extent.low, extent.high, _columns, _rows);
     }
 
+    const std::optional<std::string> _folder = FilesByOthers::Scope::folder();
     std::unique_ptr<TimeSteps> _steps;
     const FrameCrs _crs;
     const LayerSource _source;

@@ -6,6 +6,7 @@
 #include <osgGeoFX/geodata/OverlayRaster.h>
 #include <osgGeoFX/geodata/detail/CubeFace.h>
 #include <osgGeoFX/geodata/detail/FrameRaster.h>
+#include <osgGeoFX/paging/FilesByOthers.h>
 
 #include <algorithm>
 #include <array>
@@ -57,6 +58,7 @@ public:
     osg::ref_ptr<osg::Image> read(const osg::Vec2d& from, const osg::Vec2d& to, int columns, int rows,
                                   std::string& error) override
     {
+        const FilesByOthers::Scope scope(_folder);
         try
         {
             std::unique_ptr<FrameRaster> raster = take(itself);
@@ -123,6 +125,7 @@ private:
         _idle[overview].push_back(std::move(raster));
     }
 
+    const std::optional<std::string> _folder = FilesByOthers::Scope::folder();
     const std::shared_ptr<GdalCacheLimit> _cache;
     const std::string _file;
     const MappingFrame _frame;

@@ -38,6 +38,9 @@ const char* const consent =
 /// Whether this thread reads a file of somebody else's.
 thread_local int filesOpen = 0;
 
+/// Where this thread reads data of somebody else's.
+thread_local std::optional<std::string> dataFolder;
+
 /// While one exists, it does.
 class Within
 {
@@ -172,6 +175,21 @@ FilesByOthers::Gate::Gate() : _reader(new GateReader)
 FilesByOthers::Gate::~Gate()
 {
     if (osgDB::Registry::instance()) osgDB::Registry::instance()->removeReaderWriter(_reader.get());
+}
+
+FilesByOthers::Scope::Scope(std::optional<std::string> folder) : _former(std::move(dataFolder))
+{
+    dataFolder = std::move(folder);
+}
+
+FilesByOthers::Scope::~Scope()
+{
+    dataFolder = std::move(_former);
+}
+
+const std::optional<std::string>& FilesByOthers::Scope::folder()
+{
+    return dataFolder;
 }
 
 FilesByOthers::FilesByOthers(std::string folder) : _folder(std::move(folder)) {}

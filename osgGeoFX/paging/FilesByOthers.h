@@ -12,6 +12,7 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 
 namespace osgGeoFX
@@ -85,6 +86,25 @@ public:
 
     private:
         osg::ref_ptr<osgDB::ReaderWriter> _reader;
+    };
+
+    /** While one exists, its thread reads raster and vector data as somebody else's: files in a folder and below, in formats that
+        lead nowhere else; it fetches and writes nothing (FileSources lists what osgGeoFXData reads then). Objects that read later,
+        maybe in other threads, keep the folder of the scope in which they were made. Scopes may nest; the innermost holds. */
+    class OSGGEOFX_EXPORT Scope
+    {
+    public:
+        /// `folder`: a path or an address; nothing: data are trusted.
+        explicit Scope(std::optional<std::string> folder);
+        ~Scope();
+        Scope(const Scope&) = delete;
+        Scope& operator=(const Scope&) = delete;
+
+        /// Of this thread.
+        static const std::optional<std::string>& folder();
+
+    private:
+        std::optional<std::string> _former;
     };
 
 protected:

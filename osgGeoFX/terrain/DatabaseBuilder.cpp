@@ -3,6 +3,7 @@
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 
 #include <osgGeoFX/batch/detail/WorkQueue.h>
+#include <osgGeoFX/paging/FilesByOthers.h>
 #include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 #include <osgGeoFX/terrain/detail/BuildStage.h>
@@ -14,6 +15,8 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <optional>
+#include <string>
 
 namespace osgGeoFX
 {
@@ -24,6 +27,7 @@ namespace
 /// Does all units of all stages, stage after stage.
 void runStages(BuildPlan& plan, const BuildStages& stages)
 {
+//    const std::optional<std::string> folder = FilesByOthers::Scope::folder();
     // Whether voids must be filled is known after the heights.
     std::vector<bool> counted;
     for (const auto& stage : stages)
@@ -45,6 +49,7 @@ void runStages(BuildPlan& plan, const BuildStages& stages)
         runOnWorkers(stage.threads(plan.threads), stage.units(),
                      [&](int worker, std::size_t unit)
                      {
+//                         const FilesByOthers::Scope scope(folder);
                          if (!(plan.options.resume && stage.takeOver(unit)) && stage.hasWork(unit) &&
                              !stage.keep(unit))
                              stage.run(worker, unit);

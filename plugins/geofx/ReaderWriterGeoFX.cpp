@@ -20,6 +20,7 @@
 #include <exception>
 #include <istream>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,9 @@ private:
                                const Options* options)
     {
         const std::string folder = osgDB::getFilePath(real);
+        const bool anywhere = isAllowedOutside(options);
+        std::optional<FilesByOthers::Scope> scope;
+        if (!anywhere) scope.emplace(folder);
         SceneResult result = parseScene(text, path, folder);
         if (result.scene) result.errors = faultsOfFiles(*result.scene, folder, options);
         if (!result.errors.empty()) return failure(result.errors);
@@ -88,7 +92,6 @@ private:
             return failure({result.scene->map->place.message(
                 "this scene is the terrain of another one, and names stand over the whole picture; move the "
                 "<map> into the outer scene.")});
-        const bool anywhere = isAllowedOutside(options);
         result.scene->anywhere = anywhere;
         ScenePath database;
         if (result.scene->database)

@@ -190,8 +190,12 @@ bool TestServer::answer(int socket, const std::string& name)
         delay = _delay;
     }
     std::this_thread::sleep_for(delay);
-    std::ifstream stream(_folder / name, std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    std::ifstream stream;
+    // Folders can be opened, too.
+    if (std::filesystem::is_regular_file(_folder / name)) stream.open(_folder / name, std::ios::binary);
+    std::string bytes;
+    if (stream.is_open())
+        bytes.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
     const std::string half = bytes.substr(0, bytes.size() / 2);
     const std::string page = "<html>Welcome to the network of this hotel.</html>";
     switch (fault)

@@ -3,6 +3,8 @@
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/detail/DataGuard.h>
+#include <osgGeoFX/paging/FilesByOthers.h>
 #include <osgGeoFX/paging/ReadingFile.h>
 
 #include <cpl_error.h>
@@ -40,6 +42,7 @@ void initialiseGdal()
 {
     static std::once_flag once;
     std::call_once(once, [] { GDALAllRegister(); });
+    if (FilesByOthers::Scope::folder()) guardGdal();
 }
 
 GdalErrorScope::GdalErrorScope()
@@ -52,10 +55,11 @@ GdalErrorScope::~GdalErrorScope()
     CPLPopErrorHandler();
 }
 
-void CPL_STDCALL GdalErrorScope::handle(CPLErr severity, CPLErrorNum, const char* text)
+void CPL_STDCALL GdalErrorScope::handle(CPLErr severity, CPLErrorNum number, const char* text)
 {
     auto* scope = static_cast<GdalErrorScope*>(CPLGetErrorHandlerUserData());
-    if (severity >= CE_Failure && scope->_message.empty()) scope->_message = text;
+    if ((severity >= CE_Failure || number == refusedByGuard) && scope->_message.empty())
+        scope->_message = text;
 }
 
 std::shared_ptr<GdalCacheLimit> GdalCacheLimit::small()

@@ -65,10 +65,11 @@ struct TransformationDestroyer
 };
 using TransformationPtr = std::unique_ptr<OGRCoordinateTransformation, TransformationDestroyer>;
 
-/// Registers GDAL's drivers once for the process. Thread-safe.
+/// Registers GDAL's drivers once for the process, and guards them where files by others are read. Thread-safe.
 void initialiseGdal();
 
-/** While it lives, keeps what GDAL reports on this thread from the terminal; `message()` is the first failure.
+/** While it lives, keeps what GDAL reports on this thread from the terminal; `message()` is the first failure, or why
+    a file by others is not read.
     GDAL's handlers are a stack for each thread, so these nest. */
 class GdalErrorScope
 {
