@@ -9,6 +9,8 @@ namespace osgGeoFX
 
 PassEffect::~PassEffect() = default;
 
+void PassEffect::forget(const osg::Group&) {}
+
 osg::ref_ptr<TileListener> PassEffect::tileListener(const Ground&)
 {
     return nullptr;

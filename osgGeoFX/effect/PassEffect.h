@@ -29,6 +29,9 @@ public:
     /// thread calls this before the scene is culled, and for passes of other effects that draw companions, too
     /// (ScenePass::within()). Each needs an object of its own, which must stay valid until the same cull visitor asks again.
     virtual DrawableCompanion* companion(const ScenePass&) { return nullptr; }
+    /// A scene has removed the effect, which lets go of what it has for that scene alone. No camera culls the scene then; frames on
+    /// their way may still be drawn. Does nothing by default.
+    virtual void forget(const osg::Group& scene);
     /// The listener for tiles that a pager reads; null, the default, for none. EffectScene::listenTo() asks for it.
     virtual osg::ref_ptr<TileListener> tileListener(const Ground&);
 

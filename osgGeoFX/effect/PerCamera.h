@@ -52,7 +52,27 @@ public:
     }
     Data& of(Owner& owner, const osg::Group& scene) { return of(owner, &scene); }
 
+    /// Deletes all data of a scene. Only where whatever a frame on its way still draws with is kept by that frame.
+    void forget(const osg::Group& scene)
+    {
+        std::vector<std::unique_ptr<Camera>> gone;
+        const std::lock_guard<std::mutex> lock(_mutex);
+        for (auto entry = _all.begin(); entry != _all.end();)
+        {
+            const bool stays = entry->first.second != &scene;
+            if (!stays) gone.push_back(std::move(entry->second));
+            entry = stays ? std::next(entry) : _all.erase(entry);
+        }
+    }
+
     /// Calls an action with the data of each.
+    template<class Action>
+    void each(const Action& action)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        for (const auto& [key, camera] : _all)
+            action(camera->data);
+    }
     template<class Action>
     void each(const Action& action) const
     {

@@ -118,7 +118,8 @@ public:
         bool ofView = false;
         /// Companions of the drawables that a filter chooses, drawn with their states; null for none.
         const std::vector<DrawableCompanion*>* companions = nullptr;
-        /// Whether pagers are asked for tiles that the pass lacks. Without, it draws what is there.
+        /// Whether pagers are asked for tiles that the pass lacks. Without, it draws what is there, and what it draws does not
+        /// count as seen: a pager, or a MemoryBudget, removes tiles that nobody else draws.
         bool asksForTiles = true;
     };
     /** Culls the scene again and draws what it finds. Compensation, paging and levels of detail are as for the scene

@@ -5,15 +5,15 @@
 #include <osgGeoFX/effect/PassEffect.h>
 #include <osgGeoFX/effect/PerCamera.h>
 #include <osgGeoFX/light/detail/ShadowMaps.h>
+#include <osgGeoFX/light/detail/SunFinder.h>
 
-#include <osg/LOD>
-#include <osg/LightSource>
-#include <osg/Transform>
+#include <osg/Notify>
 
-#include <algorithm>
+#include <array>
 #include <atomic>
-#include <optional>
-#include <utility>
+#include <map>
+#include <memory>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -24,90 +24,6 @@ namespace
 void set(osg::StateSet& state, const std::string& name, const osg::Vec4d& value)
 {
     state.getOrCreateUniform(name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(value));
-}
-
-/// What OpenGL knows of a light: the light, and the matrix that leads from its frame to the eye space of the view.
-using LightAt = std::optional<std::pair<const osg::Light*, osg::Matrixd>>;
-
-bool isSun(const osg::StateAttribute* attribute)
-{
-    const auto* light = dynamic_cast<const osg::Light*>(attribute);
-    return light && light->getLightNum() == 0;
-}
-
-/// The last light 0 below a node, but not in what a pager has read.
-const osg::Light* sunBelow(osg::Node& node, unsigned int mask, osg::Matrixd& matrix)
-{
-    if (!(node.getNodeMask() & mask) || node.asCamera() || dynamic_cast<osg::LOD*>(&node)) return nullptr;
-    const auto* source = dynamic_cast<osg::LightSource*>(&node);
-    osg::Group* group = node.asGroup();
-    const osg::Matrixd above = matrix;
-    if (osg::Transform* transform = node.asTransform()) transform->computeLocalToWorldMatrix(matrix, nullptr);
-    for (unsigned int i = group ? group->getNumChildren() : 0; i-- > 0;)
-    {
-        osg::Matrixd inner = matrix;
-        if (const osg::Light* found = sunBelow(*group->getChild(i), mask, inner))
-        {
-            matrix = inner;
-            return found;
-        }
-    }
-    if (source && isSun(source->getLight())) return source->getLight();
-    matrix = above;
-    return nullptr;
-}
-
-/// The light 0 of a source that is traversed after the scene, and so wins over those that the stage knows.
-LightAt sunAfter(const ScenePass& pass)
-{
-    const osg::NodePath& path = pass.outer.getNodePath();
-    osg::Matrixd toWorld;
-    for (std::size_t i = 0; i + 1 < path.size(); ++i)
-    {
-        if (osg::Transform* transform = path[i]->asTransform())
-            transform->computeLocalToWorldMatrix(toWorld, nullptr);
-        osg::Group* group = path[i]->asGroup();
-        const unsigned int here = group ? group->getChildIndex(path[i + 1]) : 0;
-        for (unsigned int j = group ? group->getNumChildren() : 0; j-- > here + 1;)
-        {
-            osg::Matrixd matrix = toWorld;
-            const osg::Light* found = sunBelow(*group->getChild(j), pass.outer.getTraversalMask(), matrix);
-            // From the world by the way of the scene's own frame, since the view is given in that.
-            if (found)
-                return std::pair(found, matrix * osg::computeWorldToLocal(path, true) * pass.view.modelView);
-        }
-    }
-    return std::nullopt;
-}
-
-/// The last one that the stage knows, as OSG applies them.
-LightAt sunOfStage(const ScenePass& pass)
-{
-    LightAt found;
-    osgUtil::PositionalStateContainer& lights =
-        *pass.outer.getCurrentRenderBin()->getStage()->getPositionalStateContainer();
-    for (const auto& [attribute, matrix] : lights.getAttrMatrixList())
-    {
-        if (!isSun(attribute)) continue;
-        found = std::pair(static_cast<const osg::Light*>(attribute.get()),
-                          matrix ? osg::Matrixd(*matrix) : osg::Matrixd());
-        if (!pass.view.image.ofView) found->second.postMult(pass.view.image.toView);
-    }
-    return found;
-}
-
-/// Towards the sun, in the eye space of the view; empty where light 0 is none.
-std::optional<osg::Vec3d> towardsSun(const ScenePass& pass)
-{
-    LightAt sun = sunAfter(pass);
-    if (!sun) sun = sunOfStage(pass);
-    if (!sun) return std::nullopt;
-    const osg::Vec4 position = sun->first->getPosition();
-    const osg::Vec4& color = sun->first->getDiffuse();
-    if (position.w() != 0.0f || std::max({color.r(), color.g(), color.b()}) <= 0.0f) return std::nullopt;
-    osg::Vec3d towards = osg::Matrixd::transform3x3(
-        osg::Vec3d(osg::Vec3(position.x(), position.y(), position.z())), sun->second);
-    return towards.normalize() > 0.0 ? std::optional(towards) : std::nullopt;
 }
 
 /// Which way is up: above a plane in the first three, on a globe from its center, in the fourth how many of both.
@@ -136,22 +52,37 @@ public:
     }
 
     void cull(const ScenePass& pass) override;
+    void forget(const osg::Group& scene) override
+    {
+        _draws.forget(scene);
+        _cameras.forget(scene);
+    }
     Statistics statistics() const { return {_drawn, _kept}; }
-    void resizeGLObjectBuffers(unsigned int size) override { _cameras.resizeGLObjectBuffers(size); }
-    void releaseGLObjects(osg::State* state) const override { _cameras.releaseGLObjects(state); }
+    void resizeGLObjectBuffers(unsigned int size) override
+    {
+        _draws.resizeGLObjectBuffers(size);
+        _cameras.resizeGLObjectBuffers(size);
+    }
+    void releaseGLObjects(osg::State* state) const override
+    {
+        _draws.releaseGLObjects(state);
+        _cameras.releaseGLObjects(state);
+    }
 
 private:
-    /// The maps of one camera. Its cull visitor may come several times before anything is drawn.
-    class Looks
+    /// What a cull visitor draws maps with. It may come several times before anything is drawn.
+    class Draws
     {
     public:
-        ShadowMaps& next(unsigned int frame)
+        /// The number of the next one within the frame.
+        std::size_t next(unsigned int frame)
         {
             if (frame != _frame) _used = 0;
             _frame = frame;
             if (_used == _all.size()) _all.push_back(std::make_unique<ShadowMaps>());
-            return *_all[_used++];
+            return _used++;
         }
+        ShadowMaps& operator[](std::size_t number) { return *_all[number]; }
         void resizeGLObjectBuffers(unsigned int size)
         {
             for (const std::unique_ptr<ShadowMaps>& each : _all)
@@ -169,30 +100,55 @@ private:
         unsigned int _frame = 0;
     };
 
+    /// What all cull visitors of a camera share. With grids of their own they would drift apart.
+    struct Camera
+    {
+        ShadowGrid grid;
+        std::map<std::size_t, ShadowTexture> textures; ///< by the number within the frame
+
+        void resizeGLObjectBuffers(unsigned int size)
+        {
+            for (auto& [number, texture] : textures)
+                texture.resizeGLObjectBuffers(size);
+        }
+        void releaseGLObjects(osg::State* state) const
+        {
+            for (const auto& [number, texture] : textures)
+                texture.releaseGLObjects(state);
+        }
+    };
+
     const SunShadows& _shadows;
-    std::atomic<std::uint64_t> _drawn{0}, _kept{0}; ///< maps
-    PerCamera<Looks> _cameras;
-    PerCamera<ShadowGrid, osg::Camera>
-        _grids; ///< one for all cull visitors of a camera, or they would drift apart
+    std::atomic<std::uint64_t> _drawn{0}, _kept{0};         ///< maps
+    std::array<std::atomic<bool>, Sun::SHINING> _said = {}; ///< of each complaint
+    PerCamera<Draws> _draws;
+    PerCamera<Camera, osg::Camera> _cameras;
 };
 
 void SunShadows::Pass::cull(const ScenePass& pass)
 {
-    const std::optional<osg::Vec3d> towards = towardsSun(pass);
-    if (!towards) return;
-    set(pass.state, pass.prefix + "towards", {*towards, 1.0});
+    const Sun sun = Sun::find(pass);
+    const std::string complaint = sun.complaint();
+    if (!complaint.empty() && !_said[sun.kind].exchange(true))
+        OSG_WARN << "osgGeoFX: " << complaint << std::endl;
+    if (sun.kind != Sun::SHINING) return;
+    const osg::Vec3d& towards = sun.towards;
+    set(pass.state, pass.prefix + "towards", {towards, 1.0});
     setHorizon(pass.state, pass.prefix, pass.view);
     // On a globe the place below the eye tells nothing of the rest, but what is far away has no shadows anyway.
-    if (*towards * pass.view.up <= 0.0) return;
-    ShadowGrid& grid = _grids.of(*pass.outer.getCurrentCamera(), pass.scene);
+    if (towards * pass.view.up <= 0.0) return;
+    Camera& camera = _cameras.of(*pass.outer.getCurrentCamera(), pass.scene);
     const int texels = _shadows._mapSize;
-    const ShadowCascades cascades(pass.view, grid, *towards, _shadows._nearest, _shadows._cascades, texels);
-    ShadowMaps& maps = _cameras.of(pass.outer, pass.scene).next(pass.frame);
+    const ShadowCascades cascades(pass.view, GroundBelow::find(pass), camera.grid, towards, _shadows._nearest,
+                                  _shadows._cascades, texels);
+    Draws& draws = _draws.of(pass.outer, pass.scene);
+    const std::size_t number = draws.next(pass.frame);
+    ShadowTexture& texture = camera.textures[number];
     const auto count = static_cast<int>(cascades.all().size());
-    const int drawn = maps.draw(pass, cascades, texels);
+    const int drawn = draws[number].draw(pass, cascades, texels, texture);
     _drawn += static_cast<std::uint64_t>(drawn);
     _kept += static_cast<std::uint64_t>(count - drawn);
-    pass.state.setTextureAttribute(static_cast<unsigned int>(pass.units.front()), maps.texture());
+    pass.state.setTextureAttribute(static_cast<unsigned int>(pass.units.front()), texture.texture());
     osg::Uniform& matrices =
         *pass.state.getOrCreateUniform(pass.prefix + "maps", osg::Uniform::FLOAT_MAT4, ShadowCascades::most);
     osg::Uniform& sizes =
@@ -207,12 +163,12 @@ void SunShadows::Pass::cull(const ScenePass& pass)
         {double(count), double(texels), cascades.firstShare(), _shadows._strength});
 }
 
-SunShadows::SunShadows() : _noMaps(ShadowMaps::makeTexture(1, 1)), _pass(new Pass(*this)) {}
+SunShadows::SunShadows() : _noMaps(ShadowTexture::makeTexture(1, 1)), _pass(new Pass(*this)) {}
 
 SunShadows::SunShadows(const SunShadows& other, const osg::CopyOp& copy)
     : SurfaceEffect(other, copy), TextureUser(other), _strength(other._strength), _cascades(other._cascades),
       _mapSize(other._mapSize), _nearest(other._nearest), _mapUnit(other._mapUnit),
-      _noMaps(ShadowMaps::makeTexture(1, 1)), _pass(new Pass(*this))
+      _noMaps(ShadowTexture::makeTexture(1, 1)), _pass(new Pass(*this))
 {
 }
 
@@ -241,7 +197,7 @@ const Properties& SunShadows::properties() const
                 .of<&Self::_mapSize>(),
             Property::number(
                 "nearest",
-                "half the width of the first map; 0 goes by the eye's height above the lowest ground", 0.0,
+                "half the width of the first map; 0 goes by the eye's height above the ground below it", 0.0,
                 100000.0, "m")
                 .of<&Self::_nearest>(),
             TextureUnits::property("mapUnit", "the texture unit of the maps").of<&Self::_mapUnit>(),

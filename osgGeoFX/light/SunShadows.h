@@ -21,7 +21,8 @@ namespace osgGeoFX
     @endcode
 
     **What it does.** The direct light of OpenGL's light 0, diffuse and specular, does not reach what lies in shadow; ambient
-    light and other lights do. The light must have a direction (w = 0). Where it stands below a place's horizon, all of the
+    light and other lights do. The light must have a direction (w = 0); a view's headlight does not count. Where there is no such light, one
+    warning says why. Where it stands below a place's horizon, all of the
     place is in shadow. A light without a diffuse color throws none.
 
     **Undeformed.** Shadows are those of the undeformed world, and a place is in shadow on bent or lifted ground if it is on the plain
@@ -29,12 +30,12 @@ namespace osgGeoFX
     the picture.
 
     **How sharp, how far.** Each of the cascades is four times as wide as the one before, and has as many texels. The first one
-    reaches about as far as the eye is high, at least 64 m; five of them reach from 16 km, for an eye near the ground, on. Farther
+    reaches about as far as the eye is above the ground below it, at least 64 m; five of them reach from 16 km, for an eye near the ground, on. Farther
     ground has no shadows. Edges are about two texels soft. The texels stay where they are while the camera moves or
     turns, and turn smoothly with the sun, so nothing shimmers.
 
     **Who throws, who receives.** Geometry that has no shader of its own: terrain, RigidParts, what stands below a RigidReference; at the levels
-    of detail that the picture shows, and also beside it, as far as it is loaded. The maps ask for no tiles. A texture with holes throws the shadow of
+    of detail that the picture shows, and also beside it, as far as it is loaded. The maps ask for no tiles, and keep none in memory. A texture with holes throws the shadow of
     its whole polygon. Programs of applications throw none; they receive shadows if their fragment shader multiplies the light by
     `float geofx_sunlight();` (EffectScene::addFunctions). What a panorama map paints has no light, and so no shadows; names have none; lines on the ground (MapLines) get paler ones. The
     back of a face that is lit on two sides, by its vertices' normals, stays as it is. osgEarth's engine and core
@@ -59,10 +60,11 @@ public:
     /// How many maps there are, 1…6. Default: 5.
     bool setCascades(int count) { return assign("cascades", count); }
     int getCascades() const { return _cascades; }
-    /// The texels along the side of one map, 64…4096. Each has four bytes for each camera. Default: 2048.
+    /// The texels along the side of one map, 64…4096. Default: 2048. Each has four bytes for each camera, however many frames are on
+    /// their way: 80 MiB with five maps. Where five of them in a row are wider than the context's largest texture, 96 MiB.
     bool setMapSize(int texels) { return assign("mapSize", texels); }
     int getMapSize() const { return _mapSize; }
-    /// Half the width of the first map, metres, 0…100 000. The default, 0, goes by the eye's height above the lowest ground.
+    /// Half the width of the first map, metres, 0…100 000. The default, 0, goes by the eye's height above the ground below it.
     bool setNearest(double metres) { return assign("nearest", metres); }
     double getNearest() const { return _nearest; }
 

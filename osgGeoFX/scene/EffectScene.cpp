@@ -63,8 +63,10 @@ bool EffectScene::removeEffect(Effect* effect)
 {
     const auto found = std::find(_effects.begin(), _effects.end(), effect);
     if (found == _effects.end()) return false;
+    const osg::ref_ptr<Effect> removed = *found;
     _effects.erase(found);
-    _drawing->programs.dirty();
+    _drawing->forgetEffects();
+    if (PassEffect* pass = removed->asPassEffect()) pass->forget(*this);
     return true;
 }
 

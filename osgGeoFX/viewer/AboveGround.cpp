@@ -2,10 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/viewer/AboveGround.h>
 
-#include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/scene/DeformedView.h>
-#include <osgGeoFX/scene/RigidReference.h>
+#include <osgGeoFX/scene/detail/GroundVisitor.h>
 
 #include <osg/Timer>
 #include <osgGA/AnimationPathManipulator>
@@ -43,14 +42,6 @@ std::uint64_t stampOf(EffectScene& scene)
             add(part.object->revision());
     }
     return stamp;
-}
-
-bool isThing(const DeformedLineIntersector::Intersection& hit)
-{
-    return RigidParts::of(*hit.drawable) ||
-           std::any_of(hit.path.begin(), hit.path.end(),
-                       [](const osg::Node* node)
-                       { return dynamic_cast<const RigidReference*>(node) != nullptr; });
 }
 
 } // namespace
@@ -110,8 +101,8 @@ double AboveGround::rise(EffectScene& scene, const osg::Matrixd& view, const osg
     const ViewGeometry geometry(picture.modelView(), camera.getProjectionMatrix(), picture.ground());
     const osg::Vec3d& up = geometry.up;
     const osg::ref_ptr<DeformedLineIntersector> ray = new DeformedLineIntersector(up * reach, -up);
-    const osg::ref_ptr<DeformedIntersectionVisitor> visitor = new DeformedIntersectionVisitor(
-        ray, picture.chain(), picture.modelView(), static_cast<double>(camera.getLODScale()));
+    const osg::ref_ptr<GroundVisitor> visitor = new GroundVisitor(ray, picture.chain(), picture.modelView(),
+                                                                  static_cast<double>(camera.getLODScale()));
     scene.getTerrain()->traverse(*visitor);
     // From below: what is above the eye, the nearest first, then what is below.
     const auto& hits = ray->intersections();
@@ -120,7 +111,6 @@ double AboveGround::rise(EffectScene& scene, const osg::Matrixd& view, const osg
     bool covered = false;
     for (const DeformedLineIntersector::Intersection& hit : hits)
     {
-        if (isThing(hit)) continue;
         const double height = hit.deformed * up;
         if (height <= 0.0)
         {

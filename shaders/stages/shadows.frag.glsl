@@ -3,7 +3,6 @@
 //
 // SunShadows in the fragment stage. SLOT_ stands for the effect's prefix.
 #pragma import_defines(GEOFX_NORMAL_MAP)
-#define SLOT_COLUMNS 2 // of maps in the texture
 
 uniform mat4 SLOT_maps[6];    // from the view's eye space to each map: 0 to 1 across and along the sun's rays
 uniform float SLOT_texels[6]; // metres of a texel of each
@@ -19,8 +18,10 @@ in vec3 SLOT_place;
 float SLOT_lit(int map, vec3 place)
 {
     float size = SLOT_cascades.y;
-    vec2 tile = vec2(map % SLOT_COLUMNS, map / SLOT_COLUMNS);
-    vec2 scale = 1.0 / vec2(textureSize(SLOT_depths, 0));
+    ivec2 whole = textureSize(SLOT_depths, 0);
+    int columns = whole.x / int(size);
+    vec2 tile = vec2(map % columns, map / columns);
+    vec2 scale = 1.0 / vec2(whole);
     vec2 texel = place.xy * size;
     vec2 corner = floor(texel + 0.5);
     vec2 part = texel + 0.5 - corner;

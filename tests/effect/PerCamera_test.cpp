@@ -73,3 +73,18 @@ TEST(PerCameraTest, KeepsTheDataOfASceneUntilItsOwnOwnerAsks)
     data.of(*second, *scene);
     EXPECT_EQ(alive, 2);
 }
+
+TEST(PerCameraTest, ForgetsASceneOnDemand)
+{
+    Data data;
+    const osg::ref_ptr<osg::Referenced> owner = new osg::Referenced, other = new osg::Referenced;
+    const osg::ref_ptr<osg::Group> scene = new osg::Group, kept = new osg::Group;
+    data.of(*owner, *scene);
+    data.of(*other, *scene);
+    data.of(*owner, *kept).mark = 1;
+    data.of(*owner).mark = 2;
+    data.forget(*scene);
+    EXPECT_EQ(alive, 2);
+    EXPECT_EQ(data.of(*owner, *kept).mark, 1);
+    EXPECT_EQ(data.of(*owner).mark, 2);
+}

@@ -21,6 +21,12 @@ ViewGeometry viewFrom(const osg::Vec3d& eye, const osg::Vec3d& at)
                         osg::Matrixd::perspective(40.0, 1.5, 1.0, 1e5), Ground());
 }
 
+/// Over a plain at sea level.
+GroundBelow above(const ViewGeometry& view)
+{
+    return {view.eyeHeight, view.eyeHeight};
+}
+
 osg::Vec3d inView(const ViewGeometry& view, const osg::Vec3d& direction)
 {
     return osg::Matrixd::transform3x3(direction, view.modelView);
@@ -62,7 +68,7 @@ TEST(ShadowCascades, KeepTheirTexelsWhileTheCameraMovesAndTurns)
         const osg::Vec3d eye(1000.0 + 13.7 * i, 800.0 - 5.3 * i, 300.0);
         const ViewGeometry view =
             viewFrom(eye, eye + osg::Vec3d(std::cos(0.1 * i), std::sin(0.1 * i), -0.01 * i));
-        const ShadowCascades cascades(view, grid, inView(view, sun), 0.0, 4, texels);
+        const ShadowCascades cascades(view, above(view), grid, inView(view, sun), 0.0, 4, texels);
         ASSERT_EQ(cascades.all().size(), 4u);
         for (std::size_t j = 0; j < 4; ++j)
         {
@@ -83,7 +89,7 @@ TEST(ShadowCascades, TurnAboutTheEyeWithTheSun)
     for (int i = -100; i <= 100; ++i)
     {
         const osg::Vec3d sun = unit(0.004 * i, 1e-4, 1.0);
-        const ShadowCascades cascades(view, grid, inView(view, sun), 0.0, 1, texels);
+        const ShadowCascades cascades(view, above(view), grid, inView(view, sun), 0.0, 1, texels);
         const osg::Vec2d now = inTexel(cascades.all()[0], view, eye);
         if (i > -100)
         {
@@ -98,7 +104,7 @@ TEST(ShadowCascades, AreWiderByFourAndAheadOfTheEye)
     const osg::Vec3d eye(100.0, 200.0, 300.0), sun = unit(0.3, 0.5, 0.5);
     const ViewGeometry view = viewFrom(eye, eye + osg::Vec3d(0.0, 100.0, -20.0));
     ShadowGrid grid;
-    const ShadowCascades cascades(view, grid, inView(view, sun), 0.0, 5, texels);
+    const ShadowCascades cascades(view, above(view), grid, inView(view, sun), 0.0, 5, texels);
     double radius = 256.0; // a power of four below 1.2 times the height
     for (const ShadowCascade& each : cascades.all())
     {
@@ -115,9 +121,41 @@ TEST(ShadowCascades, AreWiderByFourAndAheadOfTheEye)
     }
     EXPECT_GT(cascades.firstShare(), 0.0);
     EXPECT_LT(cascades.firstShare(), 1.0);
-    const ShadowCascades chosen(view, grid, inView(view, sun), 100.0, 2, texels);
+    const ShadowCascades chosen(view, above(view), grid, inView(view, sun), 100.0, 2, texels);
     EXPECT_DOUBLE_EQ(chosen.all()[1].radius, 400.0);
     EXPECT_DOUBLE_EQ(chosen.firstShare(), 1.0);
+}
+
+TEST(ShadowCascades, GoByTheGroundBelowTheEye)
+{
+    const osg::Vec3d sun = unit(0.3, 0.5, 0.5), ahead(0.0, 100.0, -20.0);
+    // The same height above other ground, and above ground that an exaggeration has put there.
+    struct Case
+    {
+        double eye;
+        GroundBelow ground;
+    };
+    for (const Case& each : {Case{300.0, {300.0, 300.0}}, Case{4800.0, {300.0, 300.0}},
+                             Case{4800.0, {300.0, 2550.0}}, Case{4800.0, {300.0, -1950.0}}})
+    {
+        const osg::Vec3d eye(100.0, 200.0, each.eye);
+        const ViewGeometry view = viewFrom(eye, eye + ahead);
+        ShadowGrid grid;
+        const ShadowCascades cascades(view, each.ground, grid, inView(view, sun), 0.0, 5, texels);
+        double radius = 256.0; // a power of four below 1.2 times the height
+        for (const ShadowCascade& map : cascades.all())
+        {
+            EXPECT_DOUBLE_EQ(map.radius, radius);
+            const osg::Vec3d ground(100.0, 200.0 + radius, each.eye - each.ground.undeformed);
+            const osg::Vec3d place = ground * view.modelView * map.toMap;
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                EXPECT_GT(place[axis], 0.05) << each.eye << " " << radius;
+                EXPECT_LT(place[axis], 0.95) << each.eye << " " << radius;
+            }
+            radius *= 4.0;
+        }
+    }
 }
 
 TEST(ShadowCascades, LeaveOutWhatThrowsNoShadowIntoThem)
@@ -125,7 +163,7 @@ TEST(ShadowCascades, LeaveOutWhatThrowsNoShadowIntoThem)
     const osg::Vec3d eye(0.0, 0.0, 100.0), sun = unit(0.0, 0.6, 0.8);
     const ViewGeometry view = viewFrom(eye, eye + osg::Vec3d(0.0, 100.0, -20.0));
     ShadowGrid grid;
-    const ShadowCascades cascades(view, grid, inView(view, sun), 0.0, 2, texels);
+    const ShadowCascades cascades(view, above(view), grid, inView(view, sun), 0.0, 2, texels);
     const ShadowCascade& first = cascades.all().front();
     const auto ball = [&](const osg::Vec3d& way, double radius)
     {

@@ -6,18 +6,23 @@
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/effect/LocalOrigin.h>
 #include <osgGeoFX/light/SunShadows.h>
+#include <osgGeoFX/offscreen/ImageCapture.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/scene/RigidReference.h>
 #include <tools/GlFixture.h>
 #include <tools/PlainView.h>
 
+#include <osg/ClusterCullingCallback>
+#include <osg/ContextData>
+#include <osg/GLObjects>
 #include <osg/Geometry>
 #include <osg/LightModel>
 #include <osg/LightSource>
 #include <osg/Material>
 #include <osg/MatrixTransform>
 #include <osg/PagedLOD>
+#include <osg/Switch>
 #include <osgDB/DatabasePager>
 
 #include <algorithm>
@@ -350,6 +355,20 @@ protected:
         EXPECT_LE(wrong, 1 + dark / 40) << "of " << dark + bright << ":" << where;
     }
 
+    /// What all textures of the context take, bytes.
+    unsigned int textureBytes()
+    {
+        unsigned int bytes = 0;
+        withContext(
+            [&](osg::State& state)
+            {
+                double time = 1.0;
+                osg::flushDeletedGLObjects(state.getContextID(), 0.0, time);
+                bytes = osg::get<osg::TextureObjectManager>(state.getContextID())->getCurrTexturePoolSize();
+            });
+        return bytes;
+    }
+
     osg::ref_ptr<SunShadows> _shadows = new SunShadows;
     osg::Matrixd _frame;
     osg::Vec3d _towards;
@@ -434,10 +453,88 @@ TEST_F(SunShadowsTest, AreNotThereWithoutASun)
 {
     _sun->getLight()->setDiffuse({0.0f, 0.0f, 0.0f, 1.0f});
     EXPECT_LT(meanDifference(*drawWithout(), *draw()), rounding);
-    // A lamp on a mast has no direction that is everywhere the same.
+    // A lamp on a mast has no direction that is everywhere the same, and the viewer's headlight is none.
     _sun->getLight()->setDiffuse({0.7f, 0.7f, 0.7f, 1.0f});
     _sun->getLight()->setPosition({0.0f, -200.0f, 400.0f, 1.0f});
+    const auto expectNone = [&](const std::string& why)
+    {
+        const std::vector<std::string> heard = watch().messagesOf(
+            [&]
+            {
+                for (int i = 0; i < 3; ++i)
+                    EXPECT_LT(meanDifference(*drawWithout(), *draw()), rounding) << why;
+            });
+        ASSERT_EQ(heard.size(), 1u) << ::testing::PrintToString(heard);
+        EXPECT_NE(heard[0].find(why), std::string::npos) << heard[0];
+    };
+    expectNone("Set its position with w = 0");
+    shineFrom(215.0, 32.0);
+    _sun->getLight()->setLightNum(3);
+    _root->getOrCreateStateSet()->setMode(GL_LIGHT3, osg::StateAttribute::ON);
+    expectNone("has the number 3. Call setLightNum(0)");
+    _root->removeChild(_sun);
+    viewer().setLightingMode(osg::View::HEADLIGHT);
+    expectNone("a view's headlight is none");
+    // Each of them once.
     EXPECT_LT(meanDifference(*drawWithout(), *draw()), rounding);
+    _sun->getLight()->setLightNum(0);
+    _root->getStateSet()->setMode(GL_LIGHT3, osg::StateAttribute::OFF);
+    _root->addChild(_sun);
+    EXPECT_GT(meanDifference(*drawWithout(), *draw()), 1.0);
+}
+
+// It counts which light OSG's own culling comes to last.
+TEST_F(SunShadowsTest, AreThoseOfTheLightThatIsOn)
+{
+    // A sun that moves turns the texels.
+    constexpr double ofTexels = 0.1;
+    const osg::ref_ptr<osg::Image> expected = draw();
+    const osg::ref_ptr<osg::LightSource> other = new osg::LightSource;
+    other->setLight(osg::clone(_sun->getLight()));
+    other->getLight()->setPosition(osg::Vec4d(toSun(60.0, 35.0), 0.0));
+
+    const osg::ref_ptr<osg::Switch> off = new osg::Switch;
+    off->addChild(other, false);
+    _root->addChild(off);
+    EXPECT_EQ(meanDifference(*expected, *draw()), 0.0) << "a light below a switch that is off";
+    off->setValue(0, true);
+    const osg::ref_ptr<osg::Image> ofOther = draw();
+    EXPECT_GT(meanDifference(*expected, *ofOther), 1.0);
+
+    const osg::ref_ptr<osg::LOD> levels = new osg::LOD;
+    levels->setCenterMode(osg::LOD::USER_DEFINED_CENTER);
+    levels->setRadius(1000.0f);
+    levels->addChild(_sun, 0.0f, 1e5f);
+    levels->addChild(other, 1e5f, 1e9f);
+    _root->removeChild(off);
+    _root->removeChild(_sun);
+    _root->addChild(levels);
+    EXPECT_LT(meanDifference(*expected, *draw()), ofTexels) << "a sun below levels of detail";
+    levels->setRange(0, 1e5f, 1e9f);
+    levels->setRange(1, 0.0f, 1e5f);
+    EXPECT_LT(meanDifference(*ofOther, *draw()), ofTexels);
+
+    // In the camera's own frame.
+    _root->removeChild(levels);
+    _root->addChild(_sun);
+    _sun->setReferenceFrame(osg::LightSource::ABSOLUTE_RF);
+    const osg::Vec3d eye =
+        osg::Matrixd::transform3x3(_towards, osg::Matrixd(viewer().getCamera()->getViewMatrix()));
+    _sun->getLight()->setPosition(osg::Vec4d(eye, 0.0));
+    EXPECT_LT(meanDifference(*expected, *draw()), ofTexels);
+}
+
+TEST_F(SunShadowsTest, AreAsSharpOverHighGround)
+{
+    const osg::ref_ptr<osg::Image> low = draw();
+    for (const double height : {500.0, 4500.0})
+    {
+        build(osg::Matrixd::translate(0.0, 0.0, height));
+        _scene->setTerrainFrame(EffectScene::PROJECTED);
+        // But for where its texels lie.
+        EXPECT_LT(meanDifference(*low, *draw()), 0.3) << height;
+        expectTheShadowsOfRays(2.5, 20);
+    }
 }
 
 // OpenGL leaves open what a shader that compares depths does with another texture, even where it does not look.
@@ -549,6 +646,36 @@ TEST_F(SunShadowsTest, OfWhatStandsBehindTheCameraFallIntoThePictureAndAskForNoT
     look({-370.0, -1900.0, 330.0}, {-370.0, -1000.0, 300.0});
     draw();
     EXPECT_EQ(pager->asked.count("finer.osgb"), 1u);
+}
+
+// A pager, or a MemoryBudget, removes what nobody has seen for some time.
+TEST_F(SunShadowsTest, OfATileBesideThePictureDoNotKeepIt)
+{
+    const Box tower{{-400.0, -1050.0, -20.0}, {-340.0, -990.0, 600.0}};
+    for (const osg::LOD::RangeMode mode : {osg::LOD::DISTANCE_FROM_EYE_POINT, osg::LOD::PIXEL_SIZE_ON_SCREEN})
+    {
+        build(osg::Matrixd());
+        const osg::ref_ptr<osg::PagedLOD> tile = new osg::PagedLOD;
+        tile->setRangeMode(mode);
+        tile->setCullCallback(new osg::ClusterCullingCallback);
+        // Both are there, and the first one is wanted from nowhere.
+        tile->addChild(new osg::Group, 1e7f, 1e8f);
+        tile->addChild(makeBox(tower), 0.0f, 1e7f);
+        tile->setFileName(1, "finer.osgb");
+        tile->setCenterMode(osg::LOD::USER_DEFINED_CENTER);
+        tile->setCenter((tower.low + tower.high) * 0.5);
+        tile->setRadius(330.0f);
+        const osg::ref_ptr<osg::Image> before = draw();
+        _world->addChild(tile);
+        EXPECT_GT(meanDifference(*before, *draw()), 1.0) << "no shadow";
+        EXPECT_EQ(tile->getTimeStamp(1), 0.0);
+        EXPECT_EQ(tile->getFrameNumber(1), 0u);
+        EXPECT_EQ(tile->getFrameNumberOfLastTraversal(), 0u);
+        look({-370.0, -1900.0, 330.0}, {-370.0, -1000.0, 300.0});
+        draw();
+        EXPECT_GT(tile->getTimeStamp(1), 0.0) << "it is in the picture now";
+        EXPECT_GT(tile->getFrameNumberOfLastTraversal(), 0u);
+    }
 }
 
 TEST_F(SunShadowsTest, StayAsTheyAreWhereNothingChanges)
@@ -688,6 +815,111 @@ TEST_F(SunShadowsTest, FollowWhatChanges)
         former = image;
         draw();
     }
+}
+
+// With draw threads two frames are on their way, and one set of maps is enough for both.
+TEST_F(SunShadowsTest, TakeFourBytesForEachTexelOfACamera)
+{
+    constexpr unsigned int texels = 256;
+    _shadows->setMapSize(texels);
+    _shadows->setEnabled(false);
+    draw();
+    const unsigned int before = textureBytes();
+    _shadows->setEnabled(true);
+    const auto eye = [](int step)
+    {
+        return osg::Vec3d(-60.0 + 40.0 * step, -620.0, 230.0);
+    };
+    const osg::Vec3d at(20.0, -120.0, 0.0);
+    constexpr int steps = 7;
+    std::vector<osg::ref_ptr<osg::Image>> expected;
+    for (int i = 0; i < steps; ++i)
+    {
+        look(eye(i), at);
+        expected.push_back(draw());
+    }
+    constexpr unsigned int one = 4 * texels * texels;
+    EXPECT_EQ(textureBytes() - before, 5 * one);
+
+    using Threading = osgViewer::ViewerBase;
+    for (const auto model : {Threading::CullDrawThreadPerContext, Threading::DrawThreadPerContext,
+                             Threading::CullThreadPerCameraDrawThreadPerContext})
+    {
+        const osg::ref_ptr<ImageCapture> capture =
+            ImageCapture::attach(viewer().getCamera(), ImageCapture::Format::Rgba);
+        viewer().setThreadingModel(model);
+        const SunShadows::Statistics start = _shadows->statistics();
+        for (int i = 0; i < steps; ++i)
+        {
+            // All of the frames before are on their way, or have been drawn.
+            look(eye(i), at);
+            capture->request();
+            viewer().frame();
+            const osg::ref_ptr<osg::Image> image = capture->take();
+            ASSERT_TRUE(image);
+            EXPECT_LT(meanDifference(*image, *expected[static_cast<std::size_t>(i)]), 0.01)
+                << model << " " << i;
+        }
+        for (int i = 0; i < 40; ++i)
+        {
+            look(eye(i % steps), at);
+            viewer().frame();
+        }
+        look(eye(3), at);
+        viewer().frame();
+        viewer().frame();
+        const SunShadows::Statistics still = _shadows->statistics();
+        for (int i = 0; i < 6; ++i)
+            viewer().frame();
+        EXPECT_EQ(_shadows->statistics().drawn, still.drawn) << "drawn though nothing changes";
+        EXPECT_GT(still.kept, start.kept);
+        capture->request();
+        viewer().frame();
+        const osg::ref_ptr<osg::Image> last = capture->take();
+        viewer().setThreadingModel(Threading::SingleThreaded);
+        capture->detach(viewer().getCamera());
+        ASSERT_TRUE(last);
+        EXPECT_LT(meanDifference(*last, *expected[3]), 0.01) << model;
+        EXPECT_EQ(textureBytes() - before, 5 * one) << model;
+    }
+
+    // The former ones go when what was drawn with them has gone.
+    _shadows->setCascades(3);
+    draw();
+    draw();
+    draw();
+    EXPECT_EQ(textureBytes() - before, 3 * one);
+}
+
+TEST_F(SunShadowsTest, LeaveNoTextureBehind)
+{
+    _scene->removeEffect(_shadows);
+    draw();
+    const unsigned int before = textureBytes();
+    for (const bool held : {true, false})
+    {
+        _shadows = new SunShadows;
+        _shadows->setMapSize(256);
+        _scene->addEffect(_shadows);
+        draw();
+        EXPECT_GT(textureBytes(), before + 1000000u);
+        osg::observer_ptr<SunShadows> observed = _shadows;
+        _scene->removeEffect(_shadows);
+        if (!held) _shadows = nullptr;
+        draw();
+        EXPECT_EQ(observed.valid(), held);
+        EXPECT_LT(textureBytes(), before + 100u) << held;
+    }
+    // Where it leaves one scene, another one keeps its maps.
+    _shadows = new SunShadows;
+    _scene->addEffect(_shadows);
+    const osg::ref_ptr<EffectScene> other = new EffectScene;
+    other->addEffect(_shadows);
+    draw();
+    const std::uint64_t drawn = _shadows->statistics().drawn;
+    other->removeEffect(_shadows);
+    draw();
+    EXPECT_EQ(_shadows->statistics().drawn, drawn);
 }
 
 TEST_F(SunShadowsTest, AreDrawnAnewNearbyOnlyWhileTheEyeMoves)

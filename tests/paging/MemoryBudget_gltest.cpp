@@ -9,6 +9,8 @@
 #include <osg/Geometry>
 #include <osg/Group>
 #include <osg/Texture2D>
+#include <osgGeoFX/light/SunLight.h>
+#include <osgGeoFX/light/SunShadows.h>
 #include <osgGeoFX/paging/MemoryBudget.h>
 #include <osgGeoFX/paging/PagerMonitor.h>
 #include <osgGeoFX/scene/TilePrefetch.h>
@@ -129,6 +131,34 @@ protected:
         return graph.bytes;
     }
 
+    void expectALongFlightWithinTheLimit()
+    {
+        look(-158.25);
+        settle();
+        const double limit = 1.5 * inGraph();
+        budget->setLimits(0.0, limit / MIB);
+        double most = 0.0;
+        constexpr int steps = 24;
+        for (int i = 0; i < steps; ++i)
+        {
+            look(-158.25 + 0.55 * i / steps);
+            settle();
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            frame();
+            most = std::max(most, inGraph());
+        }
+        rest();
+        const MemoryBudget::Counts counts = budget->counts();
+        std::cout << "limit " << limit / MIB << " MiB, at most " << most / MIB << " MiB; " << counts.removed
+                  << " of " << oahu->guard->counts().tilesRead << " tiles went\n";
+        EXPECT_LE(most, 1.05 * limit);
+        EXPECT_GT(counts.removed, 5u);
+        EXPECT_EQ(counts.removedAhead, 0u);
+        EXPECT_NEAR(static_cast<double>(counts.gpuBytes) / inGraph(), 1.0, 0.02)
+            << "what has gone is still in memory";
+        EXPECT_GT(inGraph(), 0.5 * limit) << "more went than had to";
+    }
+
     std::optional<Scene> oahu;
     osg::ref_ptr<MemoryBudget> budget;
 };
@@ -181,30 +211,24 @@ TEST_F(Budgets, CountWhatIsInMemory)
 TEST_F(Budgets, KeepALongFlightWithinTheLimit)
 {
     if (!open()) return;
-    look(-158.25);
-    settle();
-    const double limit = 1.5 * inGraph();
-    budget->setLimits(0.0, limit / MIB);
-    double most = 0.0;
-    constexpr int steps = 24;
-    for (int i = 0; i < steps; ++i)
-    {
-        look(-158.25 + 0.55 * i / steps);
-        settle();
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        frame();
-        most = std::max(most, inGraph());
-    }
-    rest();
-    const MemoryBudget::Counts counts = budget->counts();
-    std::cout << "limit " << limit / MIB << " MiB, at most " << most / MIB << " MiB; " << counts.removed
-              << " of " << oahu->guard->counts().tilesRead << " tiles went\n";
-    EXPECT_LE(most, 1.05 * limit);
-    EXPECT_GT(counts.removed, 5u);
-    EXPECT_EQ(counts.removedAhead, 0u);
-    EXPECT_NEAR(static_cast<double>(counts.gpuBytes) / inGraph(), 1.0, 0.02)
-        << "what has gone is still in memory";
-    EXPECT_GT(inGraph(), 0.5 * limit) << "more went than had to";
+    expectALongFlightWithinTheLimit();
+}
+
+// Shadows look at the tiles all around the camera.
+TEST_F(Budgets, KeepALongFlightWithShadowsWithinTheLimit)
+{
+    if (!open()) return;
+    const double longitude = osg::DegreesToRadians(-158.0), latitude = osg::DegreesToRadians(21.42);
+    const osg::ref_ptr<SunLight> sun = new SunLight;
+    osg::Matrixd frame;
+    ASSERT_TRUE(oahu->reference->localToWorld(longitude, latitude, 0.0, frame));
+    sun->setPlace(longitude, latitude, frame);
+    sun->setTime(*readClockTime("2026-06-21T16:00:00-10:00"));
+    oahu->effects->addChild(sun);
+    const osg::ref_ptr<SunShadows> shadows = new SunShadows;
+    oahu->effects->addEffect(shadows);
+    expectALongFlightWithinTheLimit();
+    EXPECT_GT(shadows->statistics().drawn, 100u);
 }
 
 TEST_F(Budgets, WithoutALimitThePagerDecidesAgain)

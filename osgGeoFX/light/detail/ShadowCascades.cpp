@@ -66,8 +66,8 @@ osg::Vec3d ShadowGrid::snapped(const osg::Vec3d& place, double step, double alon
     return place - _right * rest(_right, step) - _up * rest(_up, step) - _towards * rest(_towards, along);
 }
 
-ShadowCascades::ShadowCascades(const ViewGeometry& view, ShadowGrid& grid, const osg::Vec3d& towards,
-                               double nearest, int count, int texels)
+ShadowCascades::ShadowCascades(const ViewGeometry& view, const GroundBelow& ground, ShadowGrid& grid,
+                               const osg::Vec3d& towards, double nearest, int count, int texels)
 {
     const osg::Matrixd toWorld = osg::Matrixd::inverse(view.modelView);
     grid.turn(unit(osg::Matrixd::transform3x3(towards, toWorld)), toWorld.getTrans());
@@ -75,7 +75,7 @@ ShadowCascades::ShadowCascades(const ViewGeometry& view, ShadowGrid& grid, const
     _right = osg::Matrixd::transform3x3(grid.right(), view.modelView);
     _up = osg::Matrixd::transform3x3(grid.up(), view.modelView);
 
-    const double height = std::max(view.eyeHeight - std::max(view.ground.minHeight, 0.0), 0.0);
+    const double height = ground.drawn;
     double radius = nearest;
     if (nearest <= 0.0)
     {
@@ -95,7 +95,7 @@ ShadowCascades::ShadowCascades(const ViewGeometry& view, ShadowGrid& grid, const
         cascade.texel = 2.0 * radius / texels;
         const double along = 0.25 * radius;
         cascade.depth = (std::ceil((radius * length + height) / along) + 1.0) * along;
-        const osg::Vec3d place = forward * (ahead * radius) - view.up * (0.5 * height);
+        const osg::Vec3d place = forward * (ahead * radius) - view.up * (ground.undeformed - 0.5 * height);
         cascade.center = grid.snapped(place * toWorld, stride * cascade.texel, along) * view.modelView;
         const auto row = [&](int column, const osg::Vec3d& axis, double half)
         {

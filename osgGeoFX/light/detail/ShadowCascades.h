@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/effect/Deformation.h>
 #include <osgGeoFX/effect/ViewGeometry.h>
+#include <osgGeoFX/light/detail/GroundBelow.h>
 
 #include <osg/Matrixd>
 #include <osg/Vec3d>
@@ -59,10 +60,10 @@ public:
     static constexpr double smallest = 64.0; ///< metres, the least radius that an eye's height leads to
     static constexpr int stride = 8;         ///< texels by which a map moves
 
-    /// `towards`: to the sun, in the view's eye space. `nearest`: the radius of the first one; 0 goes by the eye's height.
-    /// `count`: 1…most. `texels`: along the side of a map.
-    ShadowCascades(const ViewGeometry& view, ShadowGrid& grid, const osg::Vec3d& towards, double nearest,
-                   int count, int texels);
+    /// `towards`: to the sun, in the view's eye space. `nearest`: the radius of the first one; 0 goes by the eye's height above
+    /// the ground below it. `count`: 1…most. `texels`: along the side of a map.
+    ShadowCascades(const ViewGeometry& view, const GroundBelow& ground, ShadowGrid& grid,
+                   const osg::Vec3d& towards, double nearest, int count, int texels);
 
     const std::vector<ShadowCascade>& all() const { return _all; }
     /// How much the first one counts, 0…1, where it comes or goes as the eye rises or sinks.

@@ -289,6 +289,8 @@ void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
     setComputeNearFarMode(DO_NOT_COMPUTE_NEAR_FAR);
     popProjectionMatrix();
     popViewport();
+    // The stage of a pass belongs to its effect, which may go before this visitor culls again.
+    _rootRenderStage = nullptr;
 }
 
 void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, const Task& task)

@@ -92,7 +92,7 @@ public:
         const osg::Group* terrain = nullptr; ///< below which they are looked for
         double tileError = 0.0;              ///< Ground::tileError
         std::vector<DrawableCompanion*> companions;
-        bool asksForTiles = true;              ///< false: pagers hear nothing
+        bool asksForTiles = true;              ///< false: pagers hear nothing, and what is met does not count as seen
         bool findsNearAndFar = true;           ///< false: the camera's stay as they are
         osgUtil::RenderStage* stage = nullptr; ///< where it draws; null for where `outer` does
         osg::StateSet* inPass =
@@ -316,6 +316,8 @@ private:
     /// A block of a tile, and what is below it.
     void applyBlock(osg::LOD& block);
     void applyPart(osg::Node& part);
+    /// Goes on below a node by its ranges. Where no tile is asked for, none counts as seen.
+    void applyLevels(osg::LOD& node);
     template<typename NodeType>
     void passUntouched(NodeType& node);
     /// Remembers a leaf for what effects draw together with it.

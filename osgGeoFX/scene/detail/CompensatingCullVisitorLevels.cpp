@@ -9,7 +9,8 @@
 
 #include <osgGeoFX/paging/TerrainInfo.h>
 
-#include <osg/LOD>
+#include <osg/ClusterCullingCallback>
+#include <osg/PagedLOD>
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +28,15 @@ bool isPlain(const osg::LOD& block)
 {
     return TileInfo::meshesOf(block) && block.isCullingActive() && !block.getStateSet() &&
            !block.getCullCallback() && block.getRangeMode() == osg::LOD::DISTANCE_FROM_EYE_POINT;
+}
+
+/// A node with tiles that goes on by its ranges alone. A horizon does not cull in passes.
+bool isPlainPaged(const osg::LOD& node)
+{
+    const osg::Callback* callback = node.getCullCallback();
+    return typeid(node) == typeid(osg::PagedLOD) &&
+           (!callback ||
+            (typeid(*callback) == typeid(osg::ClusterCullingCallback) && !callback->getNestedCallback()));
 }
 
 /// A group that does nothing but hold its children.
@@ -134,7 +144,7 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
     _mode.lodLimit = _mode.chain->lodLimit(node, eyeBall(node.getBound()));
     if (node.getRangeMode() != osg::LOD::PIXEL_SIZE_ON_SCREEN)
     {
-        CullVisitor::apply(node);
+        applyLevels(node);
         return;
     }
     // OSG divides the undeformed size in pixels by the LOD scale; the scale makes it the deformed one.
@@ -148,8 +158,38 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
     {
         setLODScale(static_cast<float>(static_cast<double>(former) * undeformedSize / deformedSize));
     }
-    CullVisitor::apply(node);
+    applyLevels(node);
     setLODScale(former);
+}
+
+void CompensatingCullVisitor::applyLevels(osg::LOD& node)
+{
+    if (_task.asksForTiles || !isPlainPaged(node))
+    {
+        CullVisitor::apply(node);
+        return;
+    }
+    // As the base class and osg::PagedLOD have it, but for the time at which a tile was seen: by that, it would be kept in memory.
+    pushCurrentMask();
+    osg::StateSet* state = node.getStateSet();
+    if (state) pushStateSet(state);
+    const bool byDistance = node.getRangeMode() == osg::LOD::DISTANCE_FROM_EYE_POINT;
+    const float range = byDistance ? getDistanceToViewPoint(node.getCenter(), true)
+                                   : clampedPixelSize(node.getBound()) / getLODScale();
+    const unsigned int count = node.getNumChildren();
+    unsigned int last = count;
+    bool lacks = false;
+    for (unsigned int i = 0; i < node.getNumRanges(); ++i)
+    {
+        if (range < node.getMinRange(i) || range >= node.getMaxRange(i)) continue;
+        lacks = lacks || i >= count;
+        if (i >= count) continue;
+        node.getChild(i)->accept(*this);
+        last = i;
+    }
+    if (lacks && count > 0 && last != count - 1) node.getChild(count - 1)->accept(*this);
+    if (state) popStateSet();
+    popCurrentMask();
 }
 
 osg::Vec3 CompensatingCullVisitor::raisedViewPoint() const

@@ -119,6 +119,15 @@ void ProgramCache::dirty()
     _revisions.clear();
 }
 
+void ProgramCache::forgetEffects()
+{
+    // Let go of when the lock is.
+    Effects former;
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _revisions.clear();
+    former.swap(_effects);
+}
+
 void ProgramCache::retire(const osg::ref_ptr<osg::Program>& former)
 {
     const auto gone = [](const osg::observer_ptr<osg::Program>& each)

@@ -43,6 +43,8 @@ public:
     FollowingPrograms& following() { return _following; }
     /// Notes that the list of effects has changed.
     void dirty();
+    /// The same, and keeps none of them.
+    void forgetEffects();
     /// All programs that may have GL objects.
     std::vector<osg::ref_ptr<osg::Program>> all();
 

@@ -228,6 +228,18 @@ void SceneDrawing::warnOf(const CompensatingCullVisitor::Stranger& stranger)
              << std::endl;
 }
 
+void SceneDrawing::forgetEffects()
+{
+    programs.forgetEffects();
+    // Let go of when the lock is.
+    Effects former;
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _units = nullptr;
+    former.swap(_unitEffects);
+    // What is on its way to the screen keeps its state sets.
+    _cameras.each([](Camera& camera) { camera.forgetStates(); });
+}
+
 void SceneDrawing::resizeGLObjectBuffers(unsigned int size)
 {
     for (const osg::ref_ptr<osg::Program>& program : programs.all())

@@ -42,6 +42,9 @@ public:
     /// says nothing of its children.
     static void computeBoundsBelow(const osg::Group& top);
 
+    /// Keeps no effect that the scene has removed. Not while it is culled.
+    void forgetEffects();
+
     void resizeGLObjectBuffers(unsigned int size);
     void releaseGLObjects(osg::State* state);
 
@@ -59,6 +62,11 @@ private:
         std::size_t used = 0;
 
         void startFrame(osgUtil::CullVisitor& outer);
+        void forgetStates()
+        {
+            states.clear();
+            used = 0;
+        }
         void resizeGLObjectBuffers(unsigned int size) { visitor->twins().resizeGLObjectBuffers(size); }
         void releaseGLObjects(osg::State* state) const { visitor->twins().releaseGLObjects(state); }
         CameraState& nextState(const Effects& effects, int mapUnit,
