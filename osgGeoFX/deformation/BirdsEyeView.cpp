@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 
+#include <osg/Notify>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +12,9 @@ namespace osgGeoFX
 
 namespace
 {
+
+/// Of the eye's height above the lowest ground: so far it is at least above the level from which T's height counts.
+constexpr double leastShare = 0.25;
 
 /// Where the plane through a line of the picture and parallel to the axis of the bend meets T.
 struct LineOnGround
@@ -37,6 +42,13 @@ double fade(double from, double to, double value)
 {
     const double share = std::clamp((value - from) / (to - from), 0.0, 1.0);
     return share * share * (3.0 - 2.0 * share);
+}
+
+/// The larger one of a height and a least height, without a kink: the height itself from twice the least one on.
+double atLeast(double least, double height)
+{
+    if (height >= 2.0 * least) return height;
+    return least + (height > 0.0 ? height * height / (4.0 * least) : 0.0);
 }
 
 /// The bend's share for a camera that sees the ground in a way that a bend of 90° at most cannot serve: beyond straight
@@ -99,6 +111,38 @@ const Properties& BirdsEyeView::properties() const
 std::string BirdsEyeView::inconsistency() const
 {
     return _focusLine < _horizonLine ? "" : "focusLine must lie below horizonLine.";
+}
+
+bool BirdsEyeView::sinks(const Ground& ground) const
+{
+    return getPlaneReference() == GROUND && ground.minHeight < 0.0;
+}
+
+double BirdsEyeView::planeHeight(const ViewGeometry& view) const
+{
+    const double height = PerspectiveBend::planeHeight(view);
+    if (!sinks(view.ground)) return height;
+    const double least = leastShare * std::max(view.eyeHeight - view.ground.minHeight, 0.0);
+    const double aboveZero = atLeast(least, view.eyeHeight);
+    return getPlaneHeight() > 0.0 ? aboveZero - getPlaneHeight() : std::max(height, aboveZero);
+}
+
+osg::ref_ptr<const DeformationSnapshot> BirdsEyeView::snapshot(const ViewGeometry& view) const
+{
+    // What nobody has told of cannot be reckoned with. There is no ground below these depths, but coordinates of another kind.
+    constexpr double deepest = -12000.0;
+    const bool below = view.eyeHeight <= 0.0 && view.eyeHeight > deepest && !view.ground.heightsKnown &&
+                       getPlaneReference() == GROUND && planeHeight(view) <= 0.0 &&
+                       view.projection(3, 3) == 0.0;
+    if (below && !_saidBelow.exchange(true))
+        OSG_WARN
+            << "osgGeoFX: a BirdsEyeView bends nothing while the eye is below its reference plane, which is "
+               "at "
+            << (view.ground.ellipsoid ? "the ellipsoid" : "height 0")
+            << " as long as nobody tells that the ground lies lower. State the ground's heights with "
+               "EffectScene::setGround(), or set planeHeight."
+            << std::endl;
+    return PerspectiveBend::snapshot(view);
 }
 
 std::optional<BendPlacement> BirdsEyeView::placementOf(Curve curve, const ViewGeometry& view) const

@@ -4,6 +4,8 @@
 
 #include <osgGeoFX/deformation/PerspectiveBend.h>
 
+#include <atomic>
+
 namespace osgGeoFX
 {
 
@@ -18,6 +20,11 @@ namespace osgGeoFX
     The bend exists only if the rays of both lines meet the reference plane. They miss it if the eye is below the plane
     or if the natural horizon is below horizonLine. In these cases nothing is deformed. The bend fades out before such
     a case is reached.
+
+    Ground may lie below the ellipsoid or map zero: coasts by 100 m, the shore of the Dead Sea by 400 m. An eye near such ground
+    would be below the plane. Where the database or EffectScene::setGround() tells that the ground goes below zero, the
+    level from which planeHeight counts therefore sinks before a low eye, and stays below the eye by a quarter of the eye's height
+    above the lowest ground. Where nobody tells, a warning does once.
 
     The bend angle is at most 90°. A camera may look straight down and beyond: the bend fades out as the ray of
     horizonLine turns from straight down to 15° backwards, or as the ray of focusLine turns from 75° backwards to the
@@ -46,15 +53,22 @@ public:
     const Properties& properties() const override;
     std::optional<BendPlacement> placementOf(Curve curve, const ViewGeometry& view) const override;
     double mostCurvatureOf(Curve curve, const CameraRange& cameras) const override;
+    double heightShare(const Ground& ground, double curvature) const override;
+    osg::ref_ptr<const DeformationSnapshot> snapshot(const ViewGeometry& view) const override;
 
 protected:
     ~BirdsEyeView() override;
     std::string inconsistency() const override;
+    double planeHeight(const ViewGeometry& view) const override;
 
 private:
+    /// Whether T lies lower for an eye that is low.
+    bool sinks(const Ground& ground) const;
+
     double _focusLine = 0.4;
     double _horizonLine = 0.85;
     double _contextTilt = 0.0;
+    mutable std::atomic<bool> _saidBelow{false};
 };
 
 } // namespace osgGeoFX

@@ -110,6 +110,14 @@ double BlendedView::heightShare(const Ground& ground, double curvature) const
     return std::max(_birdsEye->heightShare(ground, curvature), _pedestrian->heightShare(ground, curvature));
 }
 
+double BirdsEyeView::heightShare(const Ground& ground, double curvature) const
+{
+    const double share = PerspectiveBend::heightShare(ground, curvature);
+    if (!sinks(ground)) return share;
+    const double most = curvature * (ground.maxHeight - ground.minHeight);
+    return std::max(share, ground.ellipsoid ? most + globeShare : most);
+}
+
 double PerspectiveBend::mostGrowth(const Ground&) const
 {
     return 1.0 + foldMargin;
@@ -117,7 +125,11 @@ double PerspectiveBend::mostGrowth(const Ground&) const
 
 double BirdsEyeView::mostCurvatureOf(Curve, const CameraRange& cameras) const
 {
-    const double folds = foldCurvature(cameras.ground, -1.0);
+    double folds = foldCurvature(cameras.ground, -1.0);
+    // T sinks no lower than to half of the eye's height above the lowest ground.
+    const double least = 0.5 * cameras.distance + std::max(getPlaneHeight(), 0.0);
+    if (sinks(cameras.ground) && getTallest() < 0.0)
+        folds = std::max(folds, foldMargin / std::max(least, 1.0));
     osg::Vec3d low, high;
     const osg::Vec3d focus = rayOf(cameras.projection, _focusLine, low);
     const osg::Vec3d horizon = rayOf(cameras.projection, _horizonLine, high);

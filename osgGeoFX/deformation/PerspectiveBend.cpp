@@ -150,8 +150,14 @@ public:
             return {};
         const double inner = extent.middle.y * (_view.bend.angle > 0.0 ? 1.0 : -1.0) + extent.up;
         if (inner * std::abs(glsl::geofx_bendCurvature(_view.bend)) < 1.0) return {};
+        const std::string side = _view.bend.angle > 0.0 ? "above" : "below";
+        // `tallest` goes no higher. Skies have such bounds, and some are infinite.
+        if (!(inner <= 1e6))
+            return "something in the transition zone has a bound that reaches more than 1000 km " + side +
+                   " the reference plane, so the bend folds it over; if it is no ground, leave it out with "
+                   "setDefine(\"GEOFX_DEFORMATION\", OFF) in its state set.";
         return "something in the transition zone reaches " + std::to_string(std::lround(inner)) + " m " +
-               (_view.bend.angle > 0.0 ? "above" : "below") +
+               side +
                " the reference plane, beyond the radius of the bend, and folds over; set `tallest` to that "
                "or more.";
     }
@@ -490,7 +496,7 @@ osg::ref_ptr<const DeformationSnapshot> PerspectiveBend::snapshot(const ViewGeom
     if (!(sum < 1e15) || angle == 0.0) return nullptr;
     // A database that tells its heights needs no watching, unless someone says that they do not matter, and they do; and what
     // hangs below T in it are skirts.
-    const double highest = view.ground.maxHeight - planeLevel(view);
+    const double highest = view.ground.maxHeight - (view.eyeHeight - place->planeHeight);
     const bool matters = !(highest * std::abs(glsl::geofx_bendCurvature(bend.bend)) < foldMargin);
     const bool foldPossible = !view.ground.heightsKnown || (_tallest >= 0.0 && angle > 0.0 && matters);
     const BendSnapshot::Look look = {

@@ -161,7 +161,7 @@ protected:
 
     static Properties bendProperties();
     /// The height of the eye above T, metres.
-    double planeHeight(const ViewGeometry& view) const;
+    virtual double planeHeight(const ViewGeometry& view) const;
     /// The height of T above the ellipsoid or map zero, metres.
     double planeLevel(const ViewGeometry& view) const;
     /// The largest curvature, 1/metre, at which nothing folds over in a bend with the sign of `angle`. `reach` is a

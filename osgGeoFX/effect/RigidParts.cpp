@@ -8,6 +8,34 @@
 namespace osgGeoFX
 {
 
+void RigidParts::Switch::meet(const osg::StateSet* state)
+{
+    if (!state || state->getDefineList().empty()) return;
+    const osg::StateSet::DefinePair* found = state->getDefinePair(define);
+    if (!found || (overridden && !(found->second & osg::StateAttribute::PROTECTED))) return;
+    on = (found->second & osg::StateAttribute::ON) != 0;
+    overridden = (found->second & osg::StateAttribute::OVERRIDE) != 0;
+}
+
+const osg::Vec4Array* RigidParts::inForce(const osg::NodePath& path)
+{
+    const osg::Drawable* const drawable = path.empty() ? nullptr : path.back()->asDrawable();
+    const osg::Vec4Array* const references = drawable ? of(*drawable) : nullptr;
+    // Few drawables have any.
+    if (!references) return nullptr;
+    Switch state;
+    const osg::NodePathList above = path.front()->getParentalNodePaths();
+    for (const osg::Node* node : above.empty() ? osg::NodePath() : above.front())
+    {
+        // The thread of a view's camera may be changing its state.
+        const bool ofView = node->asCamera() && node->getNumParents() == 0;
+        if (node != path.front() && !ofView) state.meet(node->getStateSet());
+    }
+    for (const osg::Node* node : path)
+        state.meet(node->getStateSet());
+    return state.on ? references : nullptr;
+}
+
 const osg::Vec4Array* RigidParts::arrayOf(const osg::Geometry& geometry)
 {
     const osg::Array* references = geometry.getVertexAttribArray(attribute);

@@ -6,6 +6,7 @@
 
 #include <osg/Array>
 #include <osg/Geometry>
+#include <osg/Node>
 #include <osg/Vec3d>
 
 #include <vector>
@@ -32,7 +33,19 @@ struct OSGGEOFX_EXPORT RigidParts
     static constexpr unsigned int attribute = 13;
     static constexpr const char* define = "GEOFX_RIGID";
 
-    /// The array of references; null if the geometry has none of this kind.
+    /// Whether the define is in force at some place, by the state sets on the way down to it. OSG's rules of inheritance apply, as on
+    /// the GPU. Without it the attribute belongs to the application.
+    struct OSGGEOFX_EXPORT Switch
+    {
+        bool on = false;
+        bool overridden = false;
+        /// Inherits from a state set on the way down; null changes nothing.
+        void meet(const osg::StateSet* state);
+    };
+    /// The array of references of the drawable at the end of a path, if the define is in force there; otherwise null. What stands
+    /// above the path's first node counts, too, but for the camera of a view; of several parents the first one.
+    static const osg::Vec4Array* inForce(const osg::NodePath& path);
+    /// The array of references, whether the define is in force or not; null if the geometry has none of this kind.
     static const osg::Vec4Array* of(const osg::Drawable& drawable)
     {
         const osg::Geometry* geometry = drawable.asGeometry();

@@ -64,7 +64,7 @@ public:
     using osgUtil::IntersectionVisitor::IntersectionVisitor;
     void apply(osg::Drawable& drawable) override
     {
-        if (!RigidParts::of(drawable) && !GroundShade::is(drawable))
+        if (!RigidParts::inForce(getNodePath()) && !GroundShade::is(drawable))
             osgUtil::IntersectionVisitor::apply(drawable);
     }
 };

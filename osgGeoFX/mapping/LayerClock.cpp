@@ -105,9 +105,10 @@ std::string LayerClock::text(double time) const
 {
     if (_dated) return dateOf(time);
     char text[64];
-    const auto seconds = static_cast<long long>(std::floor(std::abs(time) + 0.5));
-    constexpr double seldom = 120.0;
-    if (std::abs(time) < seldom)
+    constexpr double seldom = 120.0, countable = 1e15;
+    const bool counts = std::abs(time) < countable;
+    const auto seconds = static_cast<long long>(std::floor((counts ? std::abs(time) : 0.0) + 0.5));
+    if (!counts || std::abs(time) < seldom)
         std::snprintf(text, sizeof text, "%.4g s", time);
     else
         std::snprintf(text, sizeof text, "%s%lld:%02lld:%02lld", time < 0.0 ? "-" : "", seconds / 3600,

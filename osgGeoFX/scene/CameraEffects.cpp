@@ -3,30 +3,16 @@
 #include <osgGeoFX/scene/CameraEffects.h>
 
 #include <osgGeoFX/effect/TextureUnits.h>
-#include <osgGeoFX/scene/detail/EffectProgram.h>
 
 #include <osg/Notify>
 #include <osg/UserDataContainer>
 
+#include <algorithm>
+#include <cstring>
 #include <string>
 
 namespace osgGeoFX
 {
-
-namespace
-{
-
-/// Whether the programs, the texture units and the binding points of a scene serve for either effect.
-bool interchangeable(const Effect& one, const osg::ref_ptr<Effect>& second)
-{
-    const osg::ref_ptr<Effect> first = const_cast<Effect*>(&one);
-    const TextureUnits units = TextureUnits::of({first}), others = TextureUnits::of({second});
-    return std::string(one.className()) == second->className() &&
-           EffectProgram::key({first}) == EffectProgram::key({second}) &&
-           units.ofEffects == others.ofEffects && units.ofBlocks == others.ofBlocks;
-}
-
-} // namespace
 
 CameraEffects::CameraEffects(const CameraEffects& other, const osg::CopyOp& copy)
     : osg::Object(other, copy), _role(other._role), _depthConvention(other._depthConvention),
@@ -77,17 +63,35 @@ void CameraEffects::setEnabled(const Effect& effect, bool on)
     _replacements.emplace(&effect, off);
 }
 
+bool CameraEffects::mayReplace(const Effect& effect, const Effect& replacement)
+{
+    if (&effect == &replacement) return true;
+    if (std::strcmp(effect.className(), replacement.className()) != 0) return false;
+    const TextureUnits units = TextureUnits::of({const_cast<Effect*>(&effect)}),
+                       others = TextureUnits::of({const_cast<Effect*>(&replacement)});
+    return units.ofEffects == others.ofEffects && units.ofBlocks == others.ofBlocks;
+}
+
+const Effect* CameraEffects::find(const std::function<bool(const Effect&)>& condition) const
+{
+    const auto found = std::find_if(_replacements.begin(), _replacements.end(),
+                                    [&](const auto& each) { return condition(*each.first); });
+    return found == _replacements.end() ? nullptr : found->first.get();
+}
+
 bool CameraEffects::setReplacement(const Effect& effect, Effect* replacement)
 {
     const osg::ref_ptr<Effect> other = replacement; // it may be no one else's
-    if (other && !interchangeable(effect, other))
+    if (other && !mayReplace(effect, *other))
     {
-        OSG_WARN << "osgGeoFX: CameraEffects::setReplacement: a " << other->className()
-                 << " cannot be drawn in the place of a " << effect.className()
-                 << ", since it needs other shaders or texture units; nothing changes. Use an effect of the "
-                    "same class with the same texture units, or add it to the scene and switch it by "
-                    "CameraEffects::setEnabled."
-                 << std::endl;
+        const std::string sentence =
+            "a " + std::string(other->className()) + " cannot be drawn in the place of a " +
+            effect.className() +
+            ", since it needs other shaders or texture units; nothing changes. Use an effect of the same "
+            "class "
+            "with the same texture units, or add it to the scene and switch it by CameraEffects::setEnabled.";
+        if (_refused.insert(sentence).second)
+            OSG_WARN << "osgGeoFX: CameraEffects::setReplacement: " << sentence << std::endl;
         return false;
     }
     _replacements.erase(&effect);

@@ -9,8 +9,11 @@
 #include <osg/Camera>
 #include <osg/Object>
 
+#include <functional>
 #include <map>
 #include <optional>
+#include <set>
+#include <string>
 
 namespace osgGeoFX
 {
@@ -60,11 +63,16 @@ public:
     void setEnabled(const Effect& effect, bool on);
     /** Draws another effect in the place of an effect of a scene, such as a bend with other values.
 
-        Both must be of one class, and must need the same shaders and texture units; the scene then needs no other
-        program. A `replacement` that differs is refused: false, after a warning. Null takes a replacement away. */
+        Both must be of one class, and must need the same texture units. A `replacement` that differs is refused: false, after a
+        warning, which comes once for each class. Null takes a replacement away. Effects that need other shaders, for another
+        curve or for styles, have programs of their own. A scene with a ShaderHost cannot have these, and says so. */
     bool setReplacement(const Effect& effect, Effect* replacement);
     /// What is drawn for this camera in the place of an effect: the effect itself, or another one.
     Effect* effectFor(Effect& effect) const;
+    /// Whether setReplacement() takes the second one in the place of the first one.
+    static bool mayReplace(const Effect& effect, const Effect& replacement);
+    /// The first effect that something is set for and that a condition holds for; null where there is none.
+    const Effect* find(const std::function<bool(const Effect&)>& condition) const;
 
 protected:
     ~CameraEffects() override;
@@ -73,6 +81,7 @@ private:
     std::optional<CameraRole> _role;
     std::optional<DepthConvention> _depthConvention;
     std::map<osg::ref_ptr<const Effect>, osg::ref_ptr<Effect>> _replacements;
+    std::set<std::string> _refused; ///< what a warning has told of
 };
 
 } // namespace osgGeoFX

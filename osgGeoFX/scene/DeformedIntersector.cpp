@@ -184,12 +184,13 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
     if (!bounds.valid()) return;
     const EyeBox whole = EyeBox::of(bounds, _modelView);
     if (!meets(_chain->bound(whole.ball()))) return;
-    if (misses(whole, RigidParts::reach(*drawable, *_chain, whole.ball(), _scale))) return;
+    // Many things in one drawable, each of which keeps its shape.
+    const osg::Vec4Array* references = RigidParts::inForce(visitor.getNodePath());
+    const double reach = references ? RigidParts::reach(*drawable, *_chain, whole.ball(), _scale) : 0.0;
+    if (misses(whole, reach)) return;
     const DrawableTriangles mesh(*drawable);
     // Where the vertices of a run are drawn. The ray comes near few runs of many.
     std::unordered_map<unsigned int, osg::Vec3d> deformed;
-    // Many things in one drawable, each of which keeps its shape.
-    const osg::Vec4Array* references = RigidParts::of(*drawable);
     if (references && references->size() != mesh.positions().size()) references = nullptr;
     const auto reference = [&](std::size_t vertex)
     {

@@ -25,23 +25,27 @@ void EffectCullCallback::setScene(EffectScene* scene)
         OSG_WARN << "osgGeoFX: EffectCullCallback::setScene got no scene; the former one stays." << std::endl;
 }
 
-void EffectCullCallback::warnOnce(const osg::Node& node, const char* fault)
+void EffectCullCallback::warnOnce(const osg::Node& node, Fault fault)
 {
-    if (_warned.exchange(true)) return;
+    static constexpr const char* sentences[] = {
+        "has no children to draw with effects; add the callback to a group.",
+        "OSG culls it undeformed; call its setCullingActive(false).",
+        "the callback's scene has children, which are not drawn; put them below the node."};
+    const unsigned int bit = 1u << fault;
+    if (_warned.fetch_or(bit) & bit) return;
     OSG_WARN << "osgGeoFX: The node \"" << node.getName() << "\" (" << node.className()
-             << ") has an EffectCullCallback, but " << fault << std::endl;
+             << ") has an EffectCullCallback, but " << sentences[fault] << std::endl;
 }
 
 void EffectCullCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
 {
     osgUtil::CullVisitor* const culling = visitor->asCullVisitor();
     osg::Group* const terrain = node->asGroup();
-    if (culling && !terrain)
-        warnOnce(*node, "has no children to draw with effects; add the callback to a group.");
+    if (culling && !terrain) warnOnce(*node, NO_GROUP);
     if (culling && terrain)
     {
-        if (terrain->isCullingActive())
-            warnOnce(*node, "OSG culls it undeformed; call its setCullingActive(false).");
+        if (terrain->isCullingActive()) warnOnce(*node, CULLED);
+        if (_scene->getNumChildren() > 0) warnOnce(*node, CHILDREN);
         _scene->setTerrain(*terrain);
         const auto below = [this, node](osg::NodeVisitor& inner)
         {

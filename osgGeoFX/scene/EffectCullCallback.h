@@ -27,8 +27,9 @@ namespace osgGeoFX
     the children. The transform and the state of the node itself are as OSG applies them.
 
     The node must be an osg::Group of any class. Its own `setCullingActive(false)` keeps OSG from culling it as if it
-    were not deformed; a warning reports where it is missing. Callbacks of the program that were added to the node later
-    run within this one; those added before run outside of it. A scene has one terrain: use one node for each scene.
+    were not deformed; a warning reports where it is missing, and where the scene has children. Callbacks of the program that were added to the node later
+    run within this one; those added before run outside of it. A scene has one terrain: use one node for each scene. A
+    warning reports a second one.
 
     Threads: as for EffectScene. Add and remove the callback between frames.
 
@@ -54,10 +55,16 @@ protected:
     ~EffectCullCallback() override;
 
 private:
-    void warnOnce(const osg::Node& node, const char* fault);
+    enum Fault
+    {
+        NO_GROUP,
+        CULLED,
+        CHILDREN
+    };
+    void warnOnce(const osg::Node& node, Fault fault);
 
     osg::ref_ptr<EffectScene> _scene;
-    std::atomic<bool> _warned{false};
+    std::atomic<unsigned int> _warned{0}; ///< a bit for each fault
 };
 
 } // namespace osgGeoFX

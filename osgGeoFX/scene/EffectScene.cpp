@@ -36,9 +36,15 @@ EffectScene::EffectScene(const EffectScene& other, const osg::CopyOp& copy)
         for (osg::ref_ptr<Effect>& effect : _effects)
             effect = osg::clone(effect.get(), copy);
     }
+    for (const osg::ref_ptr<Effect>& effect : _effects)
+        Misuse::enter(*effect);
 }
 
-EffectScene::~EffectScene() = default;
+EffectScene::~EffectScene()
+{
+    for (const osg::ref_ptr<Effect>& effect : _effects)
+        Misuse::leave(*effect);
+}
 
 bool EffectScene::addEffect(Effect* effect)
 {
@@ -55,7 +61,8 @@ bool EffectScene::insertEffect(unsigned int index, Effect* effect)
         return false;
     }
     _effects.insert(_effects.begin() + std::min(index, getNumEffects()), effect);
-    _drawing->programs.dirty();
+    Misuse::enter(*effect);
+    _drawing->dirty();
     return true;
 }
 
@@ -63,6 +70,7 @@ bool EffectScene::removeEffect(Effect* effect)
 {
     const auto found = std::find(_effects.begin(), _effects.end(), effect);
     if (found == _effects.end()) return false;
+    Misuse::leave(*effect);
     const osg::ref_ptr<Effect> removed = *found;
     _effects.erase(found);
     _drawing->forgetEffects();
@@ -113,7 +121,7 @@ bool EffectScene::setTextureUnits(const std::vector<int>& units)
 void EffectScene::setShaderHost(ShaderHost* host)
 {
     _shaderHost = host;
-    _drawing->programs.dirty();
+    _drawing->dirty();
 }
 
 bool EffectScene::setFirstBlockBinding(int binding)

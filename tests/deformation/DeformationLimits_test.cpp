@@ -232,6 +232,8 @@ TEST(DeformationLimits, TheBirdsEyeViewFadesTowardsTheReferencePlane)
         Random random(static_cast<std::uint64_t>(sample));
         CameraPose pose = randomCommonPose(random);
         if (pose.lens == CameraPose::ORTHOGRAPHIC) pose.lens = CameraPose::OFF_AXIS;
+        // Before low ground the plane sinks.
+        pose.lowestGround = std::max(pose.lowestGround, 0.0);
         const osg::ref_ptr<Deformation> effect = randomDeformation("birdsEyeView", random);
         std::string error;
         effect->setProperty("planeReference", PerspectiveBend::GROUND, error);
@@ -256,6 +258,51 @@ TEST(DeformationLimits, TheBirdsEyeViewFadesTowardsTheReferencePlane)
         }
         if (HasFailure()) return;
     }
+}
+
+// The shore of the Dead Sea is 400 m below the ellipsoid, and many coasts are 100 m below it.
+TEST(DeformationLimits, TheBirdsEyeViewBendsOnOverGroundBelowZero)
+{
+    for (const bool globe : {false, true})
+        for (const double lowest : {-100.0, -430.0})
+            for (const double plane : {-50.0, 0.0, 5.0})
+            {
+                SCOPED_TRACE(::testing::Message() << globe << ", " << lowest << ", " << plane);
+                const osg::ref_ptr<BirdsEyeView> effect = new BirdsEyeView;
+                effect->setPlaneHeight(plane);
+                CameraPose pose;
+                pose.globe = globe;
+                pose.x = 0.6;
+                pose.y = 0.5;
+                pose.pitch = -0.7;
+                pose.lowestGround = lowest;
+                pose.highestGround = lowest + 40.0;
+                CameraPose aboveZero = pose;
+                aboveZero.lowestGround = aboveZero.highestGround = 0.0;
+                double former = 0.0, formerHeight = 0.0;
+                for (double above = 1000.0; above >= 40.0; above -= 0.5)
+                {
+                    pose.height = aboveZero.height = lowest + above;
+                    const auto placement = effect->placement(pose.view());
+                    ASSERT_TRUE(placement) << above << " m above the ground";
+                    EXPECT_LT(placement->angle, -0.3) << above;
+                    // T is above the lowest ground, and where it is as high as elsewhere, nothing is other than elsewhere.
+                    EXPECT_GT(placement->planeHeight, 0.24 * above - std::max(plane, 0.0)) << above;
+                    EXPECT_LT(placement->planeHeight, above) << above;
+                    if (pose.height > 0.5 * above)
+                    {
+                        EXPECT_NEAR(placement->planeHeight, pose.height - plane, 1e-6) << above;
+                    }
+                    // It goes smoothly.
+                    if (above < 1000.0)
+                    {
+                        EXPECT_LT(std::abs(placement->planeHeight - formerHeight), 1.001 * 0.5) << above;
+                        EXPECT_LT(std::abs(placement->angle - former), 0.02) << above;
+                    }
+                    former = placement->angle;
+                    formerHeight = placement->planeHeight;
+                }
+            }
 }
 
 TEST(DeformationLimits, PedestrianViewAndExaggerationFadeWithTheirParameters)

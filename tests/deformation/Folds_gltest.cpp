@@ -104,6 +104,21 @@ TEST_F(Folds, AreToldOfWhatHangsBelowADownwardBend)
     EXPECT_EQ(said(*sceneOf(bend, {deep})), std::vector<std::string>()) << "the advice was followed";
 }
 
+// Such as skies, and bounds that are set to everything.
+TEST_F(Folds, AreToldWithoutANumberWhereThereIsNone)
+{
+    for (const float size : {1e8f, 3e38f})
+    {
+        const osg::ref_ptr<osg::Geometry> ground = makeGround();
+        ground->setInitialBound(osg::BoundingBox(-size, -size, -size, size, size, size));
+        const std::vector<std::string> all = said(*sceneOf(makeFold(), {ground}));
+        ASSERT_EQ(all.size(), 1u) << size;
+        EXPECT_NE(all[0].find("reaches more than 1000 km above the reference plane"), std::string::npos)
+            << all[0];
+        EXPECT_EQ(all[0].find('-'), std::string::npos) << all[0];
+    }
+}
+
 TEST_F(Folds, AreNotToldOutsideTheZone)
 {
     EXPECT_EQ(said(*sceneOf(makeFold(), {makeBox(high / 2, _inFocus), makeBox(high / 2, _inContext)})),

@@ -7,6 +7,7 @@
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/scene/DeformedIntersector.h>
+#include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/RigidReference.h>
 #include <tools/BentGround.h>
 #include <tools/ImageComparison.h>
@@ -292,4 +293,70 @@ TEST_F(RigidPartsTest, ArePickedWhereTheyAreDrawn)
     // Pixels of edges.
     EXPECT_LE(wrong, hits / 20);
     EXPECT_EQ(known, hits);
+}
+
+// Without the define, the attribute is the application's.
+TEST_F(RigidPartsTest, AnotherAttributeOfThisNumberCountsForNothing)
+{
+    const osg::Camera& camera = *viewer().getCamera();
+    const osg::ref_ptr<osg::Geometry> without = makeGround(), with = makeGround();
+    Random random(11);
+    const osg::ref_ptr<osg::Vec4Array> tangents = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX);
+    for (unsigned int i = 0; i < with->getVertexArray()->getNumElements(); ++i)
+        tangents->push_back({static_cast<float>(random.uniform(-1, 1)),
+                             static_cast<float>(random.uniform(-1, 1)), 0.0f, 1.0f});
+    with->setVertexAttribArray(RigidParts::attribute, tangents);
+    const osg::ref_ptr<EffectScene> expected = sceneOf(0, without), actual = sceneOf(0, with);
+    const osg::ref_ptr<osg::Image> picture = render(actual);
+    EXPECT_TRUE(same(*picture, *render(expected)));
+    const auto compare = [&](const char* what)
+    {
+        SCOPED_TRACE(what);
+        int hits = 0;
+        for (int y = 2; y < HEIGHT; y += 9)
+            for (int x = 2; x < WIDTH; x += 9)
+            {
+                const auto right = DeformedView(*expected, camera).pick(x, y);
+                const auto found = DeformedView(*actual, camera).pick(x, y);
+                ASSERT_EQ(found.has_value(), right.has_value()) << x << ", " << y;
+                if (!found) continue;
+                ++hits;
+                EXPECT_LT((found->world - right->world).length(), 1e-9) << x << ", " << y;
+                EXPECT_FALSE(RigidParts::inForce(found->path));
+            }
+        EXPECT_GT(hits, 50);
+    };
+    compare("no define");
+    actual->getOrCreateStateSet()->setDefine(RigidParts::define);
+    with->getOrCreateStateSet()->setDefine(RigidParts::define, osg::StateAttribute::OFF);
+    EXPECT_TRUE(same(*render(actual), *picture));
+    compare("off below a scene with it");
+}
+
+// Wherever the define is: at the scene, too.
+TEST_F(RigidPartsTest, ArePickedWhereTheSceneHasTheDefine)
+{
+    const osg::Camera& camera = *viewer().getCamera();
+    Random random(5);
+    std::vector<Box> boxes = randomBoxes(random, 40);
+    for (Box& box : boxes)
+        box.away.set(random.uniform(-15, 15), random.uniform(-25, 25), 0.0);
+    const osg::ref_ptr<osg::Geometry> parts = makeParts(boxes), other = makeParts(boxes);
+    const osg::ref_ptr<EffectScene> expected = sceneOf(0, parts), actual = sceneOf(0, other);
+    other->setStateSet(nullptr);
+    actual->getOrCreateStateSet()->setDefine(RigidParts::define);
+    EXPECT_TRUE(same(*render(actual), *render(expected)));
+    int hits = 0;
+    for (int y = 1; y < HEIGHT; y += 4)
+        for (int x = 1; x < WIDTH; x += 4)
+        {
+            const auto right = DeformedView(*expected, camera).pick(x, y);
+            const auto found = DeformedView(*actual, camera).pick(x, y);
+            ASSERT_EQ(found.has_value(), right.has_value()) << x << ", " << y;
+            if (!found) continue;
+            ++hits;
+            EXPECT_LT((found->world - right->world).length(), 1e-9) << x << ", " << y;
+            EXPECT_TRUE(RigidParts::inForce(found->path));
+        }
+    EXPECT_GT(hits, 30);
 }

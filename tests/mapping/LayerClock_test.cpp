@@ -111,6 +111,8 @@ TEST(LayerClock, TextsAreDatesOfTheCalendar)
     const osg::ref_ptr<LayerClock> clock = new LayerClock;
     EXPECT_EQ(clock->text(90.5), "90.5 s");
     EXPECT_EQ(clock->text(37230.0), "10:20:30");
+    EXPECT_EQ(clock->text(HUGE_VAL), "inf s");
+    EXPECT_EQ(clock->text(-1e300), "-1e+300 s");
     clock->setDated(true);
     Random random(7);
     for (int i = 0; i < 2000; ++i)

@@ -318,6 +318,59 @@ TEST_F(CameraRoles, ShadowMapsMayShowTheDeformedWorld)
     EXPECT_GT(differing(*image, *render(nested(straight))), 0.02);
 }
 
+// Values that are compiled into shaders, too: curves, styles, lines.
+TEST_F(CameraRoles, AReplacementMayHaveAnyValues)
+{
+    const osg::ref_ptr<BirdsEyeView> bend = makeBend();
+    const osg::ref_ptr<EffectScene> scene = sceneWith({bend});
+    const osg::ref_ptr<osg::Image> bent = render(scene);
+    CameraEffects& own = CameraEffects::of(camera());
+    const osg::ref_ptr<BirdsEyeView> other = makeBend();
+    ASSERT_TRUE(own.setReplacement(*bend, other));
+    EXPECT_TRUE(same(*render(scene), *bent));
+    const std::function<void()> changes[] = {[&] { other->setContextSaturation(0.0); },
+                                             [&] { other->setCurve(PerspectiveBend::CIRCULAR_ARC); },
+                                             [&] { other->setZoneLines(true); },
+                                             [&]
+                                             {
+                                                 other->setContextSaturation(1.0);
+                                             }};
+    for (const std::function<void()>& change : changes)
+    {
+        // While it is a replacement, and before it becomes one.
+        change();
+        const osg::ref_ptr<osg::Image> changed = render(scene);
+        own.setReplacement(*bend, nullptr);
+        EXPECT_TRUE(same(*render(scene), *bent));
+        const osg::ref_ptr<BirdsEyeView> copy = osg::clone(other.get(), osg::CopyOp::SHALLOW_COPY);
+        EXPECT_TRUE(own.setReplacement(*bend, copy));
+        const osg::ref_ptr<osg::Image> replaced = render(scene);
+        EXPECT_TRUE(own.setReplacement(*bend, other));
+        camera().setUserDataContainer(nullptr);
+        const osg::ref_ptr<osg::Image> expected = render(sceneWith({copy}));
+        EXPECT_TRUE(same(*changed, *expected));
+        EXPECT_TRUE(same(*replaced, *expected));
+        EXPECT_GT(differing(*changed, *bent), 0.001);
+        EXPECT_TRUE(CameraEffects::of(camera()).setReplacement(*bend, other));
+    }
+    // The other camera keeps the scene's own.
+    camera().setUserDataContainer(nullptr);
+    EXPECT_TRUE(same(*render(scene), *bent));
+}
+
+TEST_F(CameraRoles, ARefusedReplacementIsToldOnce)
+{
+    const osg::ref_ptr<BirdsEyeView> bend = makeBend();
+    CameraEffects& own = CameraEffects::of(camera());
+    const std::vector<std::string> refused = watch().messagesOf(
+        [&]
+        {
+            for (int i = 0; i < 5; ++i)
+                EXPECT_FALSE(own.setReplacement(*bend, new VerticalExaggeration));
+        });
+    EXPECT_EQ(refused.size(), 1u);
+}
+
 TEST_F(CameraRoles, EffectsMayDifferFromCameraToCamera)
 {
     const osg::ref_ptr<BirdsEyeView> bend = makeBend();

@@ -15,6 +15,7 @@
 #include <osg/LightSource>
 #include <osg/ShapeDrawable>
 #include <osgDB/ReadFile>
+#include <osgDB/Registry>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
@@ -26,8 +27,10 @@
 #include <osgViewer/Renderer>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <thread>
 #include <typeinfo>
@@ -100,29 +103,38 @@ public:
         traits->alpha = 8;
         window.context = new EglGraphicsContext(traits);
         makeRoom();
-        window.view = new osgViewer::View;
-        osg::Camera& camera = *window.view->getCamera();
-        camera.setGraphicsContext(window.context);
-        camera.setViewport(0, 0, WIDTH, HEIGHT);
-        camera.setProjectionMatrixAsPerspective(45.0, static_cast<double>(WIDTH) / HEIGHT, 1.0, 1e5);
-        camera.setRenderer(new LateRenderer(&camera, _late));
-        window.capture = ImageCapture::attach(&camera);
-        window.view->setSceneData(scene);
-        look(window.view, 9000.0);
-        // A thread that begins before its context is there finds no functions of OpenGL in it.
-        _viewer->stopThreading();
-        _viewer->addView(window.view);
-        _viewer->realize();
-        makeRoom();
+        window.view = newView(*window.context, scene);
+        window.capture = ImageCapture::attach(window.view->getCamera());
+        show(*window.view);
         _windows.push_back(window);
     }
     /// With its context.
     void close(std::size_t i)
     {
+        while (removeGuest(i))
+        {
+        }
         const Window window = _windows[i];
         _windows.erase(_windows.begin() + static_cast<std::ptrdiff_t>(i));
         _viewer->removeView(window.view);
         window.context->close();
+    }
+    /// One more view in the corner of a window, which has two at most.
+    void addGuest(std::size_t i, osg::Node* scene)
+    {
+        if (_windows[i].guests.size() == 2) return;
+        const osg::ref_ptr<osgViewer::View> view = newView(*_windows[i].context, scene);
+        view->getCamera()->setViewport(0, 0, WIDTH / 4, HEIGHT / 4);
+        show(*view);
+        _windows[i].guests.push_back(view);
+    }
+    /// The context stays. False where there is none.
+    bool removeGuest(std::size_t i)
+    {
+        if (_windows[i].guests.empty()) return false;
+        _viewer->removeView(_windows[i].guests.back());
+        _windows[i].guests.pop_back();
+        return true;
     }
     std::size_t size() const { return _windows.size(); }
     osgViewer::View& view(std::size_t i) { return *_windows[i].view; }
@@ -160,11 +172,78 @@ private:
         osg::ref_ptr<EglGraphicsContext> context;
         osg::ref_ptr<osgViewer::View> view;
         osg::ref_ptr<ImageCapture> capture;
+        std::vector<osg::ref_ptr<osgViewer::View>> guests;
     };
+    osg::ref_ptr<osgViewer::View> newView(EglGraphicsContext& context, osg::Node* scene) const
+    {
+        osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
+        osg::Camera& camera = *view->getCamera();
+        camera.setGraphicsContext(&context);
+        camera.setViewport(0, 0, WIDTH, HEIGHT);
+        camera.setProjectionMatrixAsPerspective(45.0, static_cast<double>(WIDTH) / HEIGHT, 1.0, 1e5);
+        camera.setRenderer(new LateRenderer(&camera, _late));
+        view->setSceneData(scene);
+        look(view, 9000.0);
+        return view;
+    }
+    void show(osgViewer::View& view)
+    {
+        // A thread that begins before its context is there finds no functions of OpenGL in it.
+        _viewer->stopThreading();
+        _viewer->addView(&view);
+        _viewer->realize();
+        makeRoom();
+    }
     osg::ref_ptr<osgViewer::CompositeViewer> _viewer;
     const int _late;
     std::vector<Window> _windows;
     int _frames = 0;
+};
+
+/// While it lives, counts the tiles in memory.
+class LiveTiles
+{
+public:
+    LiveTiles() { osgDB::Registry::instance()->setReadFileCallback(new Reader(_count, _read)); }
+    ~LiveTiles() { osgDB::Registry::instance()->setReadFileCallback(nullptr); }
+    LiveTiles(const LiveTiles&) = delete;
+    LiveTiles& operator=(const LiveTiles&) = delete;
+
+    long count() const { return *_count; }
+    /// Those that were read.
+    long read() const { return *_read; }
+
+private:
+    using Counter = std::shared_ptr<std::atomic<long>>;
+    /// Lives as long as its node.
+    struct Token : osg::Object
+    {
+        explicit Token(Counter all = nullptr) : counter(std::move(all)) {}
+        Token(const Token& other, const osg::CopyOp& copy) : osg::Object(other, copy) {}
+        ~Token() override
+        {
+            if (counter) --*counter;
+        }
+        META_Object(geofx_test, Token);
+        Counter counter;
+    };
+    struct Reader : osgDB::ReadFileCallback
+    {
+        Reader(Counter living, Counter all) : count(std::move(living)), read(std::move(all)) {}
+        osgDB::ReaderWriter::ReadResult readNode(const std::string& file,
+                                                 const osgDB::Options* options) override
+        {
+            osgDB::ReaderWriter::ReadResult result = ReadFileCallback::readNode(file, options);
+            if (!result.validNode()) return result;
+            ++*count;
+            ++*read;
+            result.getNode()->getOrCreateUserDataContainer()->addUserObject(new Token(count));
+            return result;
+        }
+        const Counter count, read;
+    };
+    const Counter _count = std::make_shared<std::atomic<long>>(0),
+                  _read = std::make_shared<std::atomic<long>>(0);
 };
 
 /// Many small things in two colors.
@@ -426,6 +505,8 @@ public:
                                              {"an effect is switched", 3, &Life::switchEffect},
                                              {"a window opens", 2, &Life::open},
                                              {"a window closes", 2, &Life::close},
+                                             {"a view comes into a window", 2, &Life::addGuest},
+                                             {"a view leaves its window", 2, &Life::removeGuest},
                                              {"two views of one scene", 2, &Life::share},
                                              {"nothing to see", 1, &Life::empty},
                                              {"another threading model", 1, &Life::changeModel}};
@@ -450,6 +531,9 @@ public:
     {
         while (_windows.size() > 1)
             _windows.close(_windows.size() - 1);
+        while (_windows.removeGuest(0))
+        {
+        }
         _windows.view(0).setSceneData(scene);
         Windows::look(&_windows.view(0), 9000.0);
         _replaced.clear();
@@ -614,6 +698,12 @@ private:
     {
         if (_windows.size() > 1) _windows.close(any());
     }
+    void addGuest()
+    {
+        _windows.addGuest(any(),
+                          _random.integer(0, 1) ? newRoot() : osg::ref_ptr<osg::Group>(&rootOf(any())));
+    }
+    void removeGuest() { _windows.removeGuest(any()); }
     void share()
     {
         // Below one root: OSG's pagers do not share a terrain.
@@ -636,14 +726,19 @@ TEST_P(LifeAndDeath, RandomStepsEndWell)
     const osg::ref_ptr<osg::Image> expected = alone(sceneOf(bird()));
     const TempDir folder;
     const std::string database = PagedScene::write(folder.path(), PagedScene::Kind::Flat).string();
-    Windows windows(GetParam(), 2);
-    Life life(windows, static_cast<std::uint64_t>(GetParam()), database);
-    std::string way;
-    for (int i = 0; i < (fullTest() ? 2500 : 30); ++i)
+    const LiveTiles tiles;
     {
-        SCOPED_TRACE("step " + std::to_string(i) + way);
-        way = ", after: " + life.step();
+        Windows windows(GetParam(), 2);
+        Life life(windows, static_cast<std::uint64_t>(GetParam()), database);
+        std::string way;
+        for (int i = 0; i < (fullTest() ? 2500 : 30); ++i)
+        {
+            SCOPED_TRACE("step " + std::to_string(i) + way);
+            way = ", after: " + life.step();
+        }
+        life.end(sceneOf(bird()));
+        EXPECT_TRUE(imagesMatch(*windows.picture(0), *expected, {}, "after-random-steps"));
     }
-    life.end(sceneOf(bird()));
-    EXPECT_TRUE(imagesMatch(*windows.picture(0), *expected, {}, "after-random-steps"));
+    EXPECT_GT(tiles.read(), 0);
+    EXPECT_EQ(tiles.count(), 0) << "tiles whose scenes and views are gone";
 }

@@ -428,6 +428,7 @@ void CompensatingCullVisitor::meet(const osg::StateSet* state)
     if (!state) return;
     const osg::StateAttribute* former = _mode.deformation.program;
     _mode.deformation.meet(state);
+    _mode.rigid.meet(state);
     const osg::StateAttribute* program = _mode.deformation.program;
     if (program != former) _mode.stranger = _programs.isStranger(program);
     _mode.chain = _mode.stranger ? _nothing.get() : &definedChain();

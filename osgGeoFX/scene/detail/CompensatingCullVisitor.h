@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/effect/DeformationChain.h>
 #include <osgGeoFX/effect/DepthConvention.h>
+#include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/effect/ScenePass.h>
 #include <osgGeoFX/scene/detail/DrawableSight.h>
 #include <osgGeoFX/scene/detail/LookCache.h>
@@ -121,6 +122,10 @@ public:
     /// What is to be said once, from the last run; empty as a rule.
     const std::string& complaint() const { return _drawables.complaint(); }
 
+    /// Whether the last run drew something with a texture on the map's unit, or that may have one; and something without.
+    bool metMap() const { return _looks.metMap() || (_task.tessellating && _dividedLooks.metMap()); }
+    bool metNoMap() const { return _looks.metNoMap() || (_task.tessellating && _dividedLooks.metNoMap()); }
+
     /// What was made for tessellation.
     const PatchTwins& twins() const { return _twins; }
     PatchTwins& twins() { return _twins; }
@@ -162,6 +167,7 @@ protected:
     {
         const DeformationChain* chain = nullptr; ///< empty below what keeps its shape or is left out
         DeformationSwitch deformation;
+        RigidParts::Switch rigid;
         bool stranger = false;       ///< the program in force does not call the functions
         bool tile = false;           ///< a drawable's own size tells whether its node is too small
         Visibility::Mask planes = 0; ///< frustum planes that bounds may still cross

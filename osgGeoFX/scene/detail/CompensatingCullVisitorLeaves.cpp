@@ -92,7 +92,8 @@ void CompensatingCullVisitor::place(osg::Drawable& drawable)
     double depth = 0.0;
     const osg::Matrixd matrix = viewMatrix();
     const bool ofEngine = _task.open && !_mode.chain->empty() && !comesWithOsg(&drawable);
-    const DrawableSight::Place where = {*_mode.chain, matrix, _scale, _mode.planes, _mode.tile, !ofEngine};
+    const DrawableSight::Place where = {*_mode.chain, matrix,    _scale,        _mode.planes,
+                                        _mode.tile,   !ofEngine, _mode.rigid.on};
     if (!_drawables.inSight(drawable, where, depth) || !std::isfinite(depth)) return;
     const bool shade = _task.depth.reversed() && GroundShade::is(drawable);
     if (shade && !_ofShades) _ofShades = GroundShade::createReversed();

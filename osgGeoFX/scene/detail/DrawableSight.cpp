@@ -48,15 +48,22 @@ bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, d
     const bool crosses = planes && !_sight.holds(deformed.center, planes);
     const bool depthWanted = _wishes.depths && place.depthCounts && !_depths.covers(deformed);
     // Things that keep their shape are not squeezed where the ground around them is, so they reach beyond what becomes of their box.
-    const double margin =
-        crosses || depthWanted ? RigidParts::reach(drawable, place.chain, box.ball(), place.scale) : 0.0;
+    const bool rigid = place.rigid && RigidParts::of(drawable);
+    const double margin = rigid && (crosses || depthWanted)
+                              ? RigidParts::reach(drawable, place.chain, box.ball(), place.scale)
+                              : 0.0;
     if (crosses && !witnessInSight(drawable, place, planes) &&
         (_sight.misses(place.chain, box, planes, margin) || meshOutside(drawable, place, planes)))
         return false;
     // What keeps its shape does not fold.
-    if (place.chain.looksAtBoxes() && _complaint.empty() && !RigidParts::of(drawable))
+    if (place.chain.looksAtBoxes() && _complaint.empty() && !rigid)
         for (const auto& snapshot : place.chain.snapshots())
             if (_complaint.empty()) _complaint = snapshot->complaint(box);
+    if (place.rigid && !rigid && (crosses || depthWanted) && !place.chain.empty() && _complaint.empty())
+        _complaint =
+            "GEOFX_RIGID is in force for the drawable \"" + drawable.getName() +
+            "\" whose vertices have no references (RigidParts::of), so it is drawn where it does not "
+            "belong; give it references with RigidParts::finish(), or set the define to OFF for it.";
     if (depthWanted) _depths.add(box, deformed, place.chain, {&drawable, place.modelView}, margin);
     if (_wishes.bounds) _bounds.add(box, place.chain);
     return true;

@@ -39,6 +39,7 @@ public:
         Visibility::Mask planes;       ///< that it may cross
         bool smallCounts;              ///< whether its size tells
         bool depthCounts = true;       ///< for near and far
+        bool rigid = false;            ///< whether things in it may have references of their own (RigidParts)
     };
     /// False if the drawable is out of sight. Otherwise `depth` is the depth of its middle, metres.
     bool inSight(const osg::Drawable& drawable, const Place& place, double& depth);

@@ -21,7 +21,7 @@ public:
     }
     void apply(osg::Drawable& drawable) override
     {
-        if (!RigidParts::of(drawable)) DeformedIntersectionVisitor::apply(drawable);
+        if (!RigidParts::inForce(getNodePath())) DeformedIntersectionVisitor::apply(drawable);
     }
 };
 

@@ -36,6 +36,7 @@ void LookCache::begin(osg::Program* program, FollowingPrograms* following, int m
     _following = following;
     _copies.clear();
     _graph = nullptr;
+    _metMap = _metNoMap = false;
 }
 
 osg::StateSet* LookCache::lookFor(const osg::Drawable& drawable, const osg::StateSet* own,
@@ -73,6 +74,10 @@ osg::StateSet* LookCache::lookFor(const FixedFunctionState& state, bool noNormal
     if (!_program) return nullptr;
     osg::Program* program = _program;
     FixedFunctionLook look = state.look(_mapUnit);
+    // An application's shaders may find it elsewhere.
+    const bool map = look.map || look.ownProgram;
+    _metMap = _metMap || map;
+    _metNoMap = _metNoMap || !map;
     if (look.ownProgram)
     {
         program = copyOf(*state.program()).fixedVertices;

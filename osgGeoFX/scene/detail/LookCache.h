@@ -41,6 +41,10 @@ public:
     /// without a look. Null for a program that draws without them.
     osg::StateSet* followingOf(const osg::StateAttribute* program);
 
+    /// Whether this traversal has met something with a texture on the map's unit, or what may have one; and something without.
+    bool metMap() const { return _metMap; }
+    bool metNoMap() const { return _metNoMap; }
+
 private:
     /// What is drawn in the place of a program of the application, in this traversal.
     struct Copy
@@ -69,6 +73,7 @@ private:
     bool _ownNoNormal = false;
     bool _normals = false;
     bool _warned = false;
+    bool _metMap = false, _metNoMap = false;
 };
 
 } // namespace osgGeoFX

@@ -50,13 +50,16 @@ int mapUnitOf(const SceneDrawing::Effects& effects)
     return -1;
 }
 
-/// The effects that a camera draws in the places of a scene's.
-SceneDrawing::Effects effectsFor(const SceneDrawing::Effects& effects, const CameraEffects& camera)
+/// Whether the one whose map is shown has nothing else to show, such as a map of what tiles say of the ground.
+bool needsMap(const SceneDrawing::Effects& effects)
 {
-    SceneDrawing::Effects result = effects;
-    for (osg::ref_ptr<Effect>& effect : result)
-        effect = camera.effectFor(*effect);
-    return result;
+    for (const auto& effect : effects)
+    {
+        const Deformation* deformation = effect->asDeformation();
+        if (deformation && effect->isActive() && deformation->mapUnit() >= 0)
+            return effect->getProperty("coverMap") == 0.0;
+    }
+    return false;
 }
 
 bool lookAtNormals(const SceneDrawing::Effects& effects)
@@ -109,13 +112,15 @@ std::optional<CameraRole> roleOf(const EffectScene& scene, osgUtil::CullVisitor&
 class SceneDrawing::Traversal
 {
 public:
-    /// `listed`: the effects of the scene; `effects`: what the camera draws in their places.
+    /// `listed`: the effects of the scene; `effects`: what the camera draws in their places; `needing`: those that the programs
+    /// are made for.
     Traversal(SceneDrawing& drawing, EffectScene& scene, const Effects& listed, const Effects& effects,
-              osgUtil::CullVisitor& outer, const ViewGeometry& view, const CameraDepth& depth,
-              const osg::Group& top, const Traverse& traverse)
-        : _drawing(drawing), _scene(scene), _listed(listed), _effects(effects), _work(effects), _outer(outer),
-          _view(view), _depth(depth), _top(top), _bound(boundOfChildren(top)), _traverse(traverse),
-          _units(drawing.unitsOf(listed, scene))
+              ProgramCache& programs, const Effects& needing, osgUtil::CullVisitor& outer,
+              const ViewGeometry& view, const CameraDepth& depth, const osg::Group& top,
+              const Traverse& traverse)
+        : _drawing(drawing), _scene(scene), _effects(effects), _programs(programs), _needing(needing),
+          _work(effects), _outer(outer), _view(view), _depth(depth), _top(top), _bound(boundOfChildren(top)),
+          _traverse(traverse), _units(drawing.unitsOf(listed, scene))
     {
     }
 
@@ -129,11 +134,14 @@ private:
     /// Culls with the visitor of the kit.
     void drawScene(Camera& own, Task task, const CameraPass::Traversal& passes, bool draws,
                    bool surfaces) const;
+    /// Whether something that was drawn has the map that an effect shows.
+    void lookForMap(const CompensatingCullVisitor& visitor, const Task& task) const;
 
     SceneDrawing& _drawing;
     EffectScene& _scene;
-    const Effects& _listed;
     const Effects& _effects;
+    ProgramCache& _programs;
+    const Effects& _needing;
     const EffectsAtWork _work;
     osgUtil::CullVisitor& _outer;
     const ViewGeometry& _view;
@@ -148,6 +156,73 @@ SceneDrawing::SceneDrawing()
 {
     _untouched->setDefine("GEOFX_DEFORMATION", osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
     _inPass->setDefine("GEOFX_IN_PASS");
+}
+
+void SceneDrawing::dirty()
+{
+    programs.dirty();
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _otherPrograms.clear();
+}
+
+SceneDrawing::Effects SceneDrawing::effectsFor(const Effects& effects, const CameraEffects& camera)
+{
+    misuse.look(camera);
+    Effects result = effects;
+    for (osg::ref_ptr<Effect>& effect : result)
+    {
+        const osg::ref_ptr<Effect> other = camera.effectFor(*effect);
+        // One that is off is not drawn, whatever it needs.
+        if (other->isActive() && !CameraEffects::mayReplace(*effect, *other))
+        {
+            misuse.say(Misuse::OTHER_UNITS,
+                       "the " + std::string(other->className()) +
+                           " that a camera's CameraEffects draw in the place of another one has come to need "
+                           "other texture units than that one, which is drawn itself. Give both the same.");
+            continue;
+        }
+        effect = other;
+    }
+    return result;
+}
+
+std::shared_ptr<ProgramCache> SceneDrawing::otherPrograms(const EffectScene& scene, const Effects& effects,
+                                                          const Effects& shown, Effects& needing)
+{
+    needing = effects;
+    for (std::size_t i = 0; i < effects.size(); ++i)
+        if (shown[i]->isActive()) needing[i] = shown[i];
+    if (needing == effects) return nullptr;
+    const std::string key = EffectProgram::key(needing);
+    if (key == EffectProgram::key(effects)) return nullptr;
+    if (scene.getShaderHost())
+    {
+        misuse.say(
+            Misuse::NO_OTHER_SHADERS,
+            "a camera's CameraEffects draw effects that need other shaders than the scene's, but an "
+            "engine has one text for all cameras (EffectScene::setShaderHost), so they have the styles "
+            "of the scene's effects. Give both the same curve and the same kinds of styles.");
+        return nullptr;
+    }
+    const std::lock_guard<std::mutex> lock(_mutex);
+    constexpr std::size_t most = 8;
+    // Programs that frames on their way are drawn with are held by these.
+    for (auto each = _otherPrograms.begin(); each != _otherPrograms.end() && _otherPrograms.size() >= most;)
+        each =
+            each->second.use_count() > 1 || each->first == key ? std::next(each) : _otherPrograms.erase(each);
+    std::shared_ptr<ProgramCache>& found = _otherPrograms[key];
+    if (!found) found = std::make_shared<ProgramCache>();
+    return found;
+}
+
+std::vector<osg::ref_ptr<osg::Program>> SceneDrawing::allPrograms()
+{
+    std::vector<osg::ref_ptr<osg::Program>> all = programs.all();
+    const std::lock_guard<std::mutex> lock(_mutex);
+    for (const auto& [key, other] : _otherPrograms)
+        for (const osg::ref_ptr<osg::Program>& program : other->all())
+            all.push_back(program);
+    return all;
 }
 
 /// The same ones as long as the list of effects and what they get stay as they are.
@@ -242,14 +317,14 @@ void SceneDrawing::forgetEffects()
 
 void SceneDrawing::resizeGLObjectBuffers(unsigned int size)
 {
-    for (const osg::ref_ptr<osg::Program>& program : programs.all())
+    for (const osg::ref_ptr<osg::Program>& program : allPrograms())
         program->resizeGLObjectBuffers(size);
     _cameras.resizeGLObjectBuffers(size);
 }
 
 void SceneDrawing::releaseGLObjects(osg::State* state)
 {
-    for (const osg::ref_ptr<osg::Program>& program : programs.all())
+    for (const osg::ref_ptr<osg::Program>& program : allPrograms())
         program->releaseGLObjects(state);
     _cameras.releaseGLObjects(state);
 }
@@ -313,21 +388,21 @@ std::vector<CameraPass::Drawer> SceneDrawing::Traversal::drawers() const
 void SceneDrawing::Traversal::drawScene(Camera& own, Task task, const CameraPass::Traversal& passes,
                                         bool draws, bool surfaces) const
 {
-    FollowingPrograms& following = _drawing.programs.following();
+    FollowingPrograms& following = _programs.following();
     osg::ref_ptr<osg::StateSet> hostAddition;
     osg::ref_ptr<osg::Program> tessellating;
     if (draws)
     {
-        task.program = _drawing.programs.programOf(_listed);
+        task.program = _programs.programOf(_needing);
         if (task.program && DividedTriangles::wanted(*task.chain))
         {
-            tessellating = _drawing.programs.tessellatingProgramOf(_listed);
+            tessellating = _programs.tessellatingProgramOf(_needing);
             task.tessellating = tessellating;
         }
         task.following = &following;
         if (ShaderHost* host = _scene.getShaderHost())
         {
-            hostAddition = _drawing.programs.tell(*host, _listed);
+            hostAddition = _programs.tell(*host, _needing);
             task.shaderHost = host;
             task.hostAddition = hostAddition;
         }
@@ -345,6 +420,20 @@ void SceneDrawing::Traversal::drawScene(Camera& own, Task task, const CameraPass
         _drawing.warnOf(stranger);
     for (const std::string& sentence : following.takeComplaints(surfaces))
         _drawing.sayOnce(sentence);
+    if (draws && task.mapUnit >= 0) lookForMap(*own.visitor, task);
+}
+
+void SceneDrawing::Traversal::lookForMap(const CompensatingCullVisitor& visitor, const Task& task) const
+{
+    Misuse& misuse = _drawing.misuse;
+    if (misuse.said(Misuse::MAP_MISSING) || task.chain->empty() || !needsMap(_effects)) return;
+    if (visitor.metMap())
+        misuse.dismiss(Misuse::MAP_MISSING);
+    else if (misuse.lasts(Misuse::MAP_MISSING, visitor.metNoMap()))
+        misuse.say(Misuse::MAP_MISSING, "nothing that is drawn has a texture on unit " +
+                                            std::to_string(task.mapUnit) +
+                                            ", which `mapUnit` names for a map. Put the map there, or name "
+                                            "the unit that has it.");
 }
 
 bool SceneDrawing::Traversal::run()
@@ -370,11 +459,10 @@ bool SceneDrawing::Traversal::run()
     Task passTask = task;
     passTask.state = &state.set();
     passTask.inPass = _drawing._inPass;
-    passTask.following = &_drawing.programs.following();
+    passTask.following = &_programs.following();
     passTask.compensate = _scene.getCompensation();
     const CameraPass::Traversal passes = {
-        _outer,   _scene, _view, passTask, own.passes, _drawing.programs, _listed, _scene.getShaderHost(),
-        drawers()};
+        _outer, _scene, _view, passTask, own.passes, _programs, _needing, _scene.getShaderHost(), drawers()};
     if (culls)
         drawScene(own, task, passes, draws, surfaces);
     else
@@ -412,8 +500,16 @@ void SceneDrawing::completeBounds(const EffectScene& scene, const osg::Group& to
 bool SceneDrawing::cull(EffectScene& scene, const Effects& effects, osgUtil::CullVisitor& outer,
                         osg::Group& top, const Traverse& traverse)
 {
-    if (dynamic_cast<CompensatingCullVisitor*>(&outer)) return false;
+    if (dynamic_cast<CompensatingCullVisitor*>(&outer))
+    {
+        if (!misuse.said(Misuse::SCENE_IN_SCENE) && !effects.empty())
+            misuse.say(Misuse::SCENE_IN_SCENE,
+                       "a scene with effects stands below another one, and is drawn with the effects of the "
+                       "outer one alone. Add its effects to that one.");
+        return false;
+    }
     if (!outer.getRenderStage() || !outer.getCurrentCamera()) return false;
+    misuse.meet(top, outer.getFrameStamp());
     NearestFirst order(*outer.getCurrentRenderBin());
     const bool orthographic = (*outer.getProjectionMatrix())(3, 3) != 0.0;
     if (orthographic && (outer.getCullingMode() & osg::CullSettings::CLUSTER_CULLING))
@@ -453,7 +549,13 @@ bool SceneDrawing::cullWithEffects(EffectScene& scene, const Effects& effects, o
     tellContext(shown, outer);
     const ViewGeometry view = viewOf(outer, *role, ground.find(scene, top, outer.getNodePath()));
     if (prefetch) prefetch->note(outer, top, view, shown, scene.getCompensation() && deforms(shown));
-    return Traversal(*this, scene, effects, shown, outer, view, depth, top, traverse).run();
+    misuse.look(scene, outer, view, top);
+    Effects needing;
+    const std::shared_ptr<ProgramCache> other =
+        special ? otherPrograms(scene, effects, shown, needing) : nullptr;
+    return Traversal(*this, scene, effects, shown, other ? *other : programs, other ? needing : effects,
+                     outer, view, depth, top, traverse)
+        .run();
 }
 
 osg::Matrixd SceneDrawing::turnOfHorizon(EffectScene& scene, const Effects& effects,

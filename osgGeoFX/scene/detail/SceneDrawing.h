@@ -8,6 +8,7 @@
 #include <osgGeoFX/scene/detail/CameraState.h>
 #include <osgGeoFX/scene/detail/CompensatingCullVisitor.h>
 #include <osgGeoFX/scene/detail/GroundFinder.h>
+#include <osgGeoFX/scene/detail/Misuse.h>
 #include <osgGeoFX/scene/detail/ProgramCache.h>
 
 #include <map>
@@ -48,8 +49,12 @@ public:
     void resizeGLObjectBuffers(unsigned int size);
     void releaseGLObjects(osg::State* state);
 
+    /// Notes that the list of effects, or what draws them, has changed.
+    void dirty();
+
     GroundFinder ground;
     ProgramCache programs;
+    Misuse misuse;
 
 private:
     class Traversal;
@@ -76,6 +81,13 @@ private:
     /// The same; false if the camera draws the scene without effects.
     bool cullWithEffects(EffectScene& scene, const Effects& effects, osgUtil::CullVisitor& outer,
                          osg::Group& top, const Traverse& traverse);
+    /// The effects that a camera draws in the places of a scene's.
+    Effects effectsFor(const Effects& effects, const CameraEffects& camera);
+    /// The programs of a camera whose effects need other shaders than the scene's; null where they need the same. `needing`:
+    /// those that they are made for.
+    std::shared_ptr<ProgramCache> otherPrograms(const EffectScene& scene, const Effects& effects,
+                                                const Effects& shown, Effects& needing);
+    std::vector<osg::ref_ptr<osg::Program>> allPrograms();
     std::shared_ptr<const TextureUnits> unitsOf(const Effects& effects, const EffectScene& scene);
     void completeBounds(const EffectScene& scene, const osg::Group& top, const osg::FrameStamp* stamp);
     void sayOnce(const std::string& sentence);
@@ -83,6 +95,7 @@ private:
 
     std::mutex _mutex;
     PerCamera<Camera> _cameras;
+    std::map<std::string, std::shared_ptr<ProgramCache>> _otherPrograms; ///< by EffectProgram::key()
     std::shared_ptr<const TextureUnits> _units;
     int _lowestUnit = TextureUnits::first, _lowestBlock = TextureUnits::firstBlock;
     TextureUnits::Units _choice;
