@@ -3,6 +3,7 @@
 #include <osgGeoFX/terrain/ThinnedRaster.h>
 
 #include <osgGeoFX/geodata/detail/Lengths.h>
+#include <osgGeoFX/geodata/detail/RasterMask.h>
 #include <osgGeoFX/geodata/detail/RasterSource.h>
 #include <osgGeoFX/terrain/detail/WaterFinder.h>
 
@@ -199,7 +200,11 @@ ThinnedRaster::Cut ThinnedRaster::cut(const std::string& file, const std::vector
 void ThinnedRaster::write(const std::string& file, const Cut& cut, const std::string& output,
                           const std::function<bool(double)>& progress)
 {
-    const DatasetPtr dataset = open(file);
+    DatasetChain chain;
+    chain.add(open(file));
+    auto mask = std::make_unique<RasterMask>(chain.file(), 1);
+    if (!mask->isEmpty() && !mask->isNoDataValue())
+        RasterMask::addTo(chain, std::move(mask), RasterMask::Form::NOT_A_NUMBER);
     std::vector<std::string> words = {
         "-of", "GTiff",     "-ot", "Float32",       "-r",  "average",         "-b", "1",
         "-co", "TILED=YES", "-co", "COMPRESS=NONE", "-co", "BIGTIFF=IF_SAFER"};
@@ -224,11 +229,11 @@ void ThinnedRaster::write(const std::string& file, const Cut& cut, const std::st
     GdalErrorScope errors;
     const std::string unfinished = output + ".part";
     int misused = 0;
-    DatasetPtr copy(
-        static_cast<GDALDataset*>(GDALTranslate(unfinished.c_str(), dataset.get(), options.get(), &misused)));
+    DatasetPtr copy(static_cast<GDALDataset*>(
+        GDALTranslate(unfinished.c_str(), GDALDataset::ToHandle(&chain.top()), options.get(), &misused)));
     const bool made = copy && !misused;
     // GDAL leaves them out where the type changes.
-    if (made) takeScale(*dataset->GetRasterBand(1), *copy->GetRasterBand(1));
+    if (made) takeScale(*chain.file().GetRasterBand(1), *copy->GetRasterBand(1));
     if (made && hasSeaFloor(*copy, file)) flattenSea(*copy, unfinished, look(file).spacing * cut.factor);
     copy.reset(); // Writes what is left.
     std::error_code fault;

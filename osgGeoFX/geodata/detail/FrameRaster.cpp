@@ -4,6 +4,8 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/CoordinateText.h>
+#include <osgGeoFX/geodata/detail/RasterMask.h>
+#include <osgGeoFX/geodata/detail/VirtualRaster.h>
 #include <osgGeoFX/mapping/LayerWords.h>
 #include <osgGeoFX/paging/ReadingFile.h>
 
@@ -232,6 +234,7 @@ FrameRaster::FrameRaster(std::string file, DatasetChain chain, std::optional<Dat
 
 void FrameRaster::prepare(std::optional<DataLayer::Kind> wanted, bool placed)
 {
+    const GdalErrorScope errors;
     if (top().GetRasterCount() == 0)
         fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
     checkSize();
@@ -313,8 +316,9 @@ std::vector<double> FrameRaster::overviews() const
     for (int i = 0; i < band->GetOverviewCount(); ++i)
     {
         GDALRasterBand* const overview = band->GetOverview(i);
-        factors.push_back(overview ? static_cast<double>(band->GetXSize()) / std::max(1, overview->GetXSize())
-                                   : 1.0);
+        const bool isWhole = overview && RasterMask::isInOverview(_chain.file(), i);
+        factors.push_back(isWhole ? static_cast<double>(band->GetXSize()) / std::max(1, overview->GetXSize())
+                                  : 1.0);
     }
     return factors;
 }
@@ -438,7 +442,6 @@ DatasetPtr FrameRaster::warped(const FrameCrs& crs, const osg::Vec2d& low, const
         arguments.emplace_back("-dstalpha");
     else
         arguments.insert(arguments.end(), {"-ot", "Float64", "-dstnodata", "nan"});
-    if (_hasMask) arguments.emplace_back("-srcalpha");
     const osg::Vec2d all = size();
     if (all.x() * all.y() > mostRead)
     {
@@ -576,17 +579,9 @@ void FrameRaster::readNumbers(osg::Image& image, GDALRasterIOExtraArg& how) cons
         failToRead(errors);
     int hasNoData = FALSE;
     const auto noData = static_cast<float>(band().GetNoDataValue(&hasNoData));
-    std::vector<GByte> mask;
-    if (!(band().GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)))
-    {
-        mask.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-        if (band().GetMaskBand()->RasterIO(GF_Read, 0, 0, columns, rows, mask.data() + last, width, height,
-                                           GDT_Byte, 1, -width, nullptr) != CE_None)
-            failToRead(errors);
-    }
     for (std::size_t i = 0; i < last + static_cast<std::size_t>(width); ++i)
     {
-        const bool isNone = (hasNoData && numbers[i] == noData) || (!mask.empty() && mask[i] == 0);
+        const bool isNone = hasNoData && numbers[i] == noData;
         const double number =
             isNone ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(numbers[i]);
         numbers[i] = static_cast<float>(number * scale + offset);
@@ -625,52 +620,38 @@ void FrameRaster::failToPlace(const GdalErrorScope& errors) const
          "); give the effect an origin near it, or warp it with gdalwarp first");
 }
 
-void FrameRaster::translate(Arguments arguments)
+void FrameRaster::failToUse(const GdalErrorScope& errors) const
 {
-    arguments.insert(arguments.end(), {"-of", "VRT"});
-    GdalErrorScope errors;
-    GDALTranslateOptions* options = GDALTranslateOptionsNew(listOf(arguments).List(), nullptr);
-    GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(&top()), options, nullptr);
-    GDALTranslateOptionsFree(options);
-    if (!result)
-        fail("its bands cannot be used (" + errors.message() +
-             "); convert it to GeoTIFF with gdal_translate");
-    _chain.add(DatasetPtr(GDALDataset::FromHandle(result)));
+    fail("its bands cannot be used (" + errors.message() + "); convert it to GeoTIFF with gdal_translate");
+}
+
+void FrameRaster::translate(const Arguments& arguments)
+{
+    const GdalErrorScope errors;
+    if (!addVirtualRaster(_chain, arguments)) failToUse(errors);
 }
 
 /// Red, green, blue and alpha, bytes.
 void FrameRaster::makeColors()
 {
     const GDALDataType type = band().GetRasterDataType();
-    if (band().GetColorTable())
-    {
-        _palette = true;
-        return translate({"-expand", "rgba"});
-    }
-    if (type != GDT_Byte && type != GDT_UInt16)
+    _palette = band().GetColorTable() != nullptr;
+    if (!_palette && type != GDT_Byte && type != GDT_UInt16)
         fail("its pixels are not colors (" + std::string(GDALGetDataTypeName(type)) +
              "); show them as values, or color them with gdaldem color-relief");
-    const bool grey = top().GetRasterCount() < 3;
-    Arguments arguments{"-b", "1",      "-b",  grey ? "1" : "2", "-b",        grey ? "1" : "3",
-                        "-b", "mask,1", "-ot", "Byte",           "-a_nodata", "none"};
-    arguments.insert(arguments.end(), {"-colorinterp", "red,green,blue,alpha"});
-    if (type == GDT_UInt16)
-        for (const char* band : {"-scale_1", "-scale_2", "-scale_3"})
-            arguments.insert(arguments.end(), {band, "0", "65535", "0", "255"});
-    translate(arguments);
+    const GdalErrorScope errors;
+    if (!RasterMask::addColors(_chain)) failToUse(errors);
 }
 
 void FrameRaster::makeValues()
 {
     scale = band().GetScale();
     offset = band().GetOffset();
-    if (top().GetRasterCount() == 1) return;
-    // A mask goes along as alpha; a no-data value tells the same.
-    int hasNoData = FALSE;
-    band().GetNoDataValue(&hasNoData);
-    _hasMask = !hasNoData;
-    translate(_hasMask ? Arguments{"-b", "1", "-b", "mask,1", "-colorinterp", "gray,alpha"}
-                       : Arguments{"-b", "1"});
+    auto mask = std::make_unique<RasterMask>(top(), 1);
+    if (!mask->isEmpty() && !mask->isNoDataValue())
+        RasterMask::addTo(_chain, std::move(mask), RasterMask::Form::NOT_A_NUMBER);
+    else if (top().GetRasterCount() > 1)
+        translate({"-b", "1"});
 }
 
 } // namespace osgGeoFX

@@ -77,8 +77,8 @@ public:
     [[noreturn]] void fail(const std::string& what) const;
     /// Gives a layer of the raster's values their unit, and one of its classes their names (LayerWords).
     void giveWords(DataLayer& layer) const;
-    /// How many pixels of the file along a side are one of each of its overviews, in the file's order. (Virtual datasets on top of
-    /// a file hide them where it has a mask.)
+    /// How many pixels of the file along a side are one of each of its overviews, in the file's order; 1 for an overview that lacks the
+    /// file's mask. (Datasets on top of a file hide them where it has a mask.)
     std::vector<double> overviews() const;
     /// The coarsest overview that is fine enough where so many of the raster's pixels along a side are a texel; -1 for the raster itself.
     int overviewFor(double pixels) const;
@@ -132,6 +132,7 @@ private:
     [[noreturn]] void failToPlace(const GdalErrorScope& errors) const;
     GDALDataset& top() const { return _chain.top(); }
     GDALRasterBand& band() const { return *top().GetRasterBand(1); }
+    [[noreturn]] void failToUse(const GdalErrorScope& errors) const;
     [[noreturn]] void failToRead(const GdalErrorScope& errors) const;
     [[noreturn]] void failToRead(const std::string& message) const;
     void prepare(std::optional<DataLayer::Kind> wanted, bool placed);
@@ -143,7 +144,7 @@ private:
     [[noreturn]] void failForOverviews() const;
     void checkSize() const;
     void readNumbers(osg::Image& image, GDALRasterIOExtraArg& how) const;
-    void translate(Arguments arguments);
+    void translate(const Arguments& arguments);
     void makeColors();
     void makeValues();
 
@@ -152,7 +153,6 @@ private:
     std::string _file;
     DatasetChain _chain;
     bool _palette = false;
-    bool _hasMask = false; ///< as a second band beside values
 };
 
 } // namespace osgGeoFX

@@ -4,6 +4,8 @@
 
 #include <osgGeoFX/geodata/detail/LatticeTransformer.h>
 #include <osgGeoFX/geodata/detail/Lengths.h>
+#include <osgGeoFX/geodata/detail/RasterMask.h>
+#include <osgGeoFX/geodata/detail/VirtualRaster.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/paging/ReadingFile.h>
@@ -27,6 +29,13 @@ namespace
 constexpr double TRANSFORM_TOLERANCE = 1e-4;
 constexpr double WARP_MEMORY_BYTES =
     48.0 * 1024 * 1024; // a constant: chunks decide the last bits of a sample
+
+/// The number of the last band if it is alpha, else 0.
+int alphaOf(GDALDataset& dataset)
+{
+    const int last = dataset.GetRasterCount();
+    return dataset.GetRasterBand(last)->GetColorInterpretation() == GCI_AlphaBand ? last : 0;
+}
 
 } // namespace
 
@@ -95,25 +104,20 @@ void RasterSource::fail(const std::string& what) const
     throw BuildError(_file + ": " + what + ".");
 }
 
+void RasterSource::failToUse(const GdalErrorScope& errors) const
+{
+    fail("its bands cannot be used (" + errors.message() + "); convert it to GeoTIFF with gdal_translate");
+}
+
 void RasterSource::translate(const std::vector<std::string>& arguments)
 {
-    CPLStringList list;
-    list.AddString("-of");
-    list.AddString("VRT");
-    for (const auto& argument : arguments)
-        list.AddString(argument.c_str());
-    GdalErrorScope errors;
-    GDALTranslateOptions* options = GDALTranslateOptionsNew(list.List(), nullptr);
-    GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(&_chain.top()), options, nullptr);
-    GDALTranslateOptionsFree(options);
-    if (!result)
-        fail("its bands cannot be used (" + errors.message() +
-             "); convert it to GeoTIFF with gdal_translate");
-    _chain.add(DatasetPtr(GDALDataset::FromHandle(result)));
+    const GdalErrorScope errors;
+    if (!addVirtualRaster(_chain, arguments)) failToUse(errors);
 }
 
 void RasterSource::openAs(RasterKind kind)
 {
+    const GdalErrorScope quiet;
     const bool placed = _chain.top().GetGeoTransform(_geoTransform.data()) == CE_None;
     if (!placed && _chain.top().GetGCPCount() == 0)
         fail("it has no georeference; give it one with gdal_translate -a_ullr WEST NORTH EAST SOUTH");
@@ -127,6 +131,14 @@ void RasterSource::openAs(RasterKind kind)
     if (GDALDataTypeIsComplex(type))
         fail("its values are complex numbers; export a real band with gdal_translate -ot Float32");
 
+    if (kind != RasterKind::Imagery)
+    {
+        auto mask = std::make_unique<RasterMask>(_chain.top(), 1);
+        if (!mask->isEmpty() && !mask->isNoDataValue())
+            RasterMask::addTo(_chain, std::move(mask),
+                              kind == RasterKind::LandCover ? RasterMask::Form::ALPHA
+                                                            : RasterMask::Form::NOT_A_NUMBER);
+    }
     if (kind == RasterKind::Elevation)
     {
         if (band->GetScale() != 1.0 || band->GetOffset() != 0.0)
@@ -137,23 +149,12 @@ void RasterSource::openAs(RasterKind kind)
     }
     else if (kind == RasterKind::Imagery)
     {
-        if (band->GetColorTable())
-            translate({"-expand", "rgba"});
-        else if (type != GDT_Byte && type != GDT_UInt16)
+        if (!band->GetColorTable() && type != GDT_Byte && type != GDT_UInt16)
             fail("its pixels are not colors (" + std::string(GDALGetDataTypeName(type)) +
                  "); make bytes of them with gdal_translate -ot Byte -scale, or color them with gdaldem "
                  "color-relief");
-        else
-        {
-            const bool grey = _chain.top().GetRasterCount() < 3;
-            std::vector<std::string> arguments{
-                "-b", "1",      "-b",  grey ? "1" : "2", "-b",           grey ? "1" : "3",
-                "-b", "mask,1", "-ot", "Byte",           "-colorinterp", "red,green,blue,alpha"};
-            if (type == GDT_UInt16)
-                for (const char* scale : {"-scale_1", "-scale_2", "-scale_3"})
-                    arguments.insert(arguments.end(), {scale, "0", "65535", "0", "255"});
-            translate(arguments);
-        }
+        const GdalErrorScope errors;
+        if (!RasterMask::addColors(_chain)) failToUse(errors);
     }
     else if (kind == RasterKind::TreeCover)
     {
@@ -177,7 +178,7 @@ void RasterSource::warpByControlPoints(RasterKind kind)
     // What lies outside the turned raster is no ground.
     int hasNoData = FALSE;
     _chain.top().GetRasterBand(1)->GetNoDataValue(&hasNoData);
-    if (kind == RasterKind::Imagery)
+    if (alphaOf(_chain.top()) > 0)
         arguments.push_back("-dstalpha");
     else if (!hasNoData && kind != RasterKind::LandCover)
         arguments.insert(arguments.end(), {"-ot", "Float32", "-dstnodata", "-32768"});
@@ -199,47 +200,20 @@ void RasterSource::warpByControlPoints(RasterKind kind)
 
 void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>& colors)
 {
-    GDALDataset& source = _chain.top();
-    // A virtual dataset is named by its XML.
-    char** description = source.GetMetadata("xml:VRT");
-    const std::string name = _chain.size() > 1 && description ? description[0] : _file;
-    char* wkt = nullptr;
-    _srs.exportToWkt(&wkt);
-    const auto escaped = [](const char* text)
+    auto mask = std::make_unique<RasterMask>(_chain.top(), 1);
+    translate({"-b", "1", "-a_nodata", "none", "-mask", "none"});
+    // GDAL looks a color table up by its index, and a <LUT> by searching.
+    GDALColorTable table;
+    for (int i = 0; i < 256; ++i)
     {
-        char* xml = CPLEscapeString(text, -1, CPLES_XML);
-        std::string result = xml;
-        CPLFree(xml);
-        return result;
-    };
-    std::string begin = CPLSPrintf("<VRTDataset rasterXSize=\"%d\" rasterYSize=\"%d\">",
-                                   source.GetRasterXSize(), source.GetRasterYSize());
-    begin += "<SRS>" + escaped(wkt) + "</SRS>";
-    CPLFree(wkt);
-    begin +=
-        CPLSPrintf("<GeoTransform>%.17g,%.17g,%.17g,%.17g,%.17g,%.17g</GeoTransform>", _geoTransform[0],
-                   _geoTransform[1], _geoTransform[2], _geoTransform[3], _geoTransform[4], _geoTransform[5]);
-    // The classes with our colors as their color table: GDAL looks a table up by its index, and a <LUT> by searching.
-    std::string classes = begin + "<VRTRasterBand dataType=\"Byte\" band=\"1\"><ColorTable>";
-    for (const auto& color : colors)
-        classes += CPLSPrintf("<Entry c1=\"%d\" c2=\"%d\" c3=\"%d\" c4=\"%d\"/>", color[0], color[1],
-                              color[2], color[3]);
-    classes += "</ColorTable><SimpleSource><SourceFilename relativeToVRT=\"0\">" + escaped(name.c_str()) +
-               "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
-    const char* interpretation[] = {"Red", "Green", "Blue", "Alpha"};
-    std::string xml = begin;
-    for (int channel = 1; channel <= 4; ++channel)
-        xml += CPLSPrintf("<VRTRasterBand dataType=\"Byte\" band=\"%d\"><ColorInterp>%s</ColorInterp>",
-                          channel, interpretation[channel - 1]) +
-               ("<ComplexSource><SourceFilename relativeToVRT=\"0\">" + escaped(classes.c_str())) +
-               CPLSPrintf("</SourceFilename><SourceBand>1</SourceBand>"
-                          "<ColorTableComponent>%d</ColorTableComponent></ComplexSource></VRTRasterBand>",
-                          channel);
-    xml += "</VRTDataset>";
-    GdalErrorScope errors;
-    DatasetPtr colored(GDALDataset::Open(xml.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
-    if (!colored) fail("its classes cannot be drawn in colors (" + errors.message() + ")");
-    _chain.add(std::move(colored));
+        const auto& color = colors[static_cast<std::size_t>(i)];
+        const GDALColorEntry entry{color[0], color[1], color[2], color[3]};
+        table.SetColorEntry(i, &entry);
+    }
+    const GdalErrorScope errors;
+    _chain.top().GetRasterBand(1)->SetColorTable(&table);
+    translate({"-expand", "rgba"});
+    if (!mask->isEmpty()) RasterMask::addTo(_chain, std::move(mask), RasterMask::Form::ALPHA);
     _colorized = true;
 }
 
@@ -384,9 +358,10 @@ void RasterSource::warp(const GridCrs& crs, const Lattice& lattice, const WarpRe
     options->panDstBands = static_cast<int*>(CPLMalloc(sizeof(int) * static_cast<std::size_t>(colors)));
     for (int band = 0; band < colors; ++band)
         options->panSrcBands[band] = options->panDstBands[band] = band + 1;
+    options->nSrcAlphaBand = alphaOf(source);
     if (request.alpha)
-        options->nSrcAlphaBand = options->nDstAlphaBand = request.bands;
-    else
+        options->nDstAlphaBand = request.bands;
+    else if (options->nSrcAlphaBand == 0)
     {
         int hasNoData = FALSE;
         const double noData = source.GetRasterBand(1)->GetNoDataValue(&hasNoData);

@@ -92,6 +92,7 @@ private:
     void translate(const std::vector<std::string>& arguments);
     void warp(const GridCrs& crs, const Lattice& lattice, const WarpRequest& request);
     [[noreturn]] void fail(const std::string& what) const;
+    [[noreturn]] void failToUse(const GdalErrorScope& errors) const;
 
     std::string _file;
     OGRSpatialReference _srs;

@@ -6,6 +6,7 @@
 #include <osgGeoFX/geodata/detail/Lengths.h>
 #include <osgGeoFX/geodata/detail/Remarks.h>
 #include <osgGeoFX/geodata/detail/StepDates.h>
+#include <osgGeoFX/geodata/detail/VirtualRaster.h>
 
 #include <cpl_string.h>
 #include <gdal_utils.h>
@@ -48,19 +49,10 @@ DatasetPtr openRaster(const std::string& file)
 /// A virtual dataset above the last one.
 void addVirtual(DatasetChain& chain, const std::vector<std::string>& arguments, const std::string& file)
 {
-    CPLStringList list;
-    list.AddString("-of");
-    list.AddString("VRT");
-    for (const std::string& each : arguments)
-        list.AddString(each.c_str());
     const GdalErrorScope errors;
-    GDALTranslateOptions* options = GDALTranslateOptionsNew(list.List(), nullptr);
-    GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(&chain.top()), options, nullptr);
-    GDALTranslateOptionsFree(options);
-    if (!result)
+    if (!addVirtualRaster(chain, arguments))
         throw BuildError(file + ": a step of it cannot be used (" + errors.message() +
                          "); check it with gdalinfo.");
-    chain.add(DatasetPtr(GDALDataset::FromHandle(result)));
 }
 
 /// Times must rise; those that do not are as good as none.
@@ -454,7 +446,9 @@ public:
     {
         const DatasetPtr dataset = openRaster(_file);
         std::vector<std::optional<double>> dates;
-        for (int i = 1; i <= dataset->GetRasterCount(); ++i)
+        const int last = dataset->GetRasterCount();
+        _hasAlpha = last > 0 && dataset->GetRasterBand(last)->GetColorInterpretation() == GCI_AlphaBand;
+        for (int i = 1; i <= (_hasAlpha ? last - 1 : last); ++i)
             dates.push_back(dateOf(*dataset->GetRasterBand(i)));
         if (dates.size() < 2)
             throw BuildError(_file +
@@ -468,7 +462,9 @@ public:
     {
         DatasetChain chain;
         chain.add(openRaster(_file));
-        addVirtual(chain, {"-b", std::to_string(index + 1)}, _file);
+        std::vector<std::string> bands{"-b", std::to_string(index + 1)};
+        if (_hasAlpha) bands.insert(bands.end(), {"-b", std::to_string(chain.file().GetRasterCount())});
+        addVirtual(chain, bands, _file);
         return std::make_unique<FrameRaster>(_file, std::move(chain), DataLayer::VALUE);
     }
 
@@ -482,6 +478,7 @@ private:
     }
 
     std::string _file;
+    bool _hasAlpha = false; ///< a last band that says which pixels are missing, and is no step
 };
 
 /// The rasters of a folder.
