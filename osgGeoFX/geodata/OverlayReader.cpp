@@ -220,9 +220,10 @@ private:
             overlay.corners = raster->corners;
         };
         addParts(*reach, "The ground overlay \"" + each.name + "\" of " + _file, overlay, take);
-        if (!options.pictures) return;
-        const auto kept = options.pictures->find({each.image, options.maxSide});
-        if (kept != options.pictures->end()) count(*kept->second);
+        // Those of this file alone end with the reading.
+        if (!_options.pictures) return;
+        const auto kept = _options.pictures->find({each.image, options.maxSide});
+        if (kept != _options.pictures->end()) count(*kept->second);
     }
 
     using Take = std::function<void(const MappingFrame&, const std::optional<MappingRaster::Window>&)>;

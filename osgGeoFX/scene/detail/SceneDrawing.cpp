@@ -309,6 +309,7 @@ void SceneDrawing::forgetEffects()
     // Let go of when the lock is.
     Effects former;
     const std::lock_guard<std::mutex> lock(_mutex);
+    _otherPrograms.clear();
     _units = nullptr;
     former.swap(_unitEffects);
     // What is on its way to the screen keeps its state sets.
