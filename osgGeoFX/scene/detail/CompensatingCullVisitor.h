@@ -93,8 +93,8 @@ public:
         const osg::Group* terrain = nullptr; ///< below which they are looked for
         double tileError = 0.0;              ///< Ground::tileError
         std::vector<DrawableCompanion*> companions;
-        bool asksForTiles = true;              ///< false: pagers hear nothing, and what is met does not count as seen
-        bool findsNearAndFar = true;           ///< false: the camera's stay as they are
+        bool asksForTiles = true;    ///< false: pagers hear nothing, and what is met does not count as seen
+        bool findsNearAndFar = true; ///< false: the camera's stay as they are
         osgUtil::RenderStage* stage = nullptr; ///< where it draws; null for where `outer` does
         osg::StateSet* inPass =
             nullptr; ///< below `state`: tells shaders that this is a pass, not the scene itself

@@ -108,7 +108,7 @@ public:
     std::shared_ptr<const VoidRaster> voids;    ///< null until the voids are filled, and if there are none
     /// Keeps others out of the database's folder, from prepareFolder() on.
     std::shared_ptr<const FolderLock> folderLock;
-    std::string fingerprint;                    ///< what the database's bytes depend on, in words
+    std::string fingerprint; ///< what the database's bytes depend on, in words
     /// What all units depend on, in words: the fingerprint without the sources of a part, and the grid.
     std::string common;
 
