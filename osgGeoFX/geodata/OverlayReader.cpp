@@ -242,9 +242,7 @@ private:
         const double coarsest =
             2.0 * osg::WGS_84_RADIUS_EQUATOR * std::sin(osg::PI_4) / std::max(1, _options.maxSide - 8);
         MappingRaster::Window window = CubeFace::window(std::max(reach.texel, coarsest));
-        // Faces lie over each other by two texels, which a coarse raster would show.
-        constexpr int leastSide = 1024;
-        window.texel = std::min(reach.texel, (window.high.x() - window.low.x()) / leastSide);
+        window.texel = reach.texel;
         for (const LocalOrigin& origin : CubeFace::origins())
         {
             MappingFrame frame = frameOf(frames.size());
@@ -291,6 +289,11 @@ private:
         const auto take = [&](const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
         {
             MappingRaster::Options options{std::nullopt, _options.maxSide, window};
+            // Faces lie over each other by two texels, which a coarse raster would show.
+            constexpr int leastSide = 1024;
+            if (window)
+                options.window->texel =
+                    std::min(window->texel, (window->high.x() - window->low.x()) / leastSide);
             if (_options.paged) overlay.tiles = tilesIn(frame, options.maxSide);
             const std::optional<MappingRaster> raster = MappingRaster::read(_file, frame, options, error);
             if (!raster) throw BuildError(error);

@@ -140,6 +140,7 @@ int CPL_STDCALL report(double done, const char*, void* progress)
 
 ThinnedRaster::Size ThinnedRaster::look(const std::string& file)
 {
+    const GdalErrorScope quiet; // also where a file's metadata are read late
     const Footprint footprint = RasterSource(file, RasterKind::Elevation).footprint(GridCrs::geocentric());
     const DatasetPtr dataset = open(file);
     const double metre = osg::DegreesToRadians(earthRadius);
@@ -152,6 +153,7 @@ ThinnedRaster::Size ThinnedRaster::look(const std::string& file)
 ThinnedRaster::Cut ThinnedRaster::cut(const std::string& file, const std::vector<osg::Vec2d>& places,
                                       int factor)
 {
+    const GdalErrorScope quiet;
     const DatasetPtr dataset = open(file);
     const int columns = dataset->GetRasterXSize(), rows = dataset->GetRasterYSize();
     Cut result{0, 0, columns, rows, std::max(factor, 1)};
@@ -200,6 +202,7 @@ ThinnedRaster::Cut ThinnedRaster::cut(const std::string& file, const std::vector
 void ThinnedRaster::write(const std::string& file, const Cut& cut, const std::string& output,
                           const std::function<bool(double)>& progress)
 {
+    const GdalErrorScope quiet;
     DatasetChain chain;
     chain.add(open(file));
     auto mask = std::make_unique<RasterMask>(chain.file(), 1);

@@ -123,6 +123,8 @@ public:
     void addGuest(std::size_t i, osg::Node* scene)
     {
         if (_windows[i].guests.size() == 2) return;
+        // OSG's threads go through the cameras of a context without a lock.
+        _viewer->stopThreading();
         const osg::ref_ptr<osgViewer::View> view = newView(*_windows[i].context, scene);
         view->getCamera()->setViewport(0, 0, WIDTH / 4, HEIGHT / 4);
         show(*view);
@@ -132,8 +134,10 @@ public:
     bool removeGuest(std::size_t i)
     {
         if (_windows[i].guests.empty()) return false;
+        _viewer->stopThreading();
         _viewer->removeView(_windows[i].guests.back());
         _windows[i].guests.pop_back();
+        _viewer->startThreading();
         return true;
     }
     std::size_t size() const { return _windows.size(); }

@@ -59,7 +59,7 @@ bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, d
     if (place.chain.looksAtBoxes() && _complaint.empty() && !rigid)
         for (const auto& snapshot : place.chain.snapshots())
             if (_complaint.empty()) _complaint = snapshot->complaint(box);
-    if (place.rigid && !rigid && (crosses || depthWanted) && !place.chain.empty() && _complaint.empty())
+    if (place.rigid && !rigid && !place.chain.empty() && _complaint.empty())
         _complaint =
             "GEOFX_RIGID is in force for the drawable \"" + drawable.getName() +
             "\" whose vertices have no references (RigidParts::of), so it is drawn where it does not "

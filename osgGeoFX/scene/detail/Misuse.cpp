@@ -121,7 +121,8 @@ void Misuse::look(const EffectScene& scene, osgUtil::CullVisitor& outer, const V
     {
         for (const osg::Node* node : outer.getNodePath())
         {
-            const auto* levels = dynamic_cast<const osg::LOD*>(node);
+            // A terrain may be of any class itself.
+            const auto* levels = node != &terrain ? dynamic_cast<const osg::LOD*>(node) : nullptr;
             if (!levels) continue;
             say(LEVELS_ABOVE,
                 "the scene stands below the node " + nameOf(*levels) +
