@@ -27,7 +27,7 @@ namespace
 /// Does all units of all stages, stage after stage.
 void runStages(BuildPlan& plan, const BuildStages& stages)
 {
-    //    const std::optional<std::string> folder = FilesByOthers::Scope::folder();
+    const std::optional<std::string> folder = FilesByOthers::Scope::folder();
     // Whether voids must be filled is known after the heights.
     std::vector<bool> counted;
     for (const auto& stage : stages)
@@ -49,7 +49,7 @@ void runStages(BuildPlan& plan, const BuildStages& stages)
         runOnWorkers(stage.threads(plan.threads), stage.units(),
                      [&](int worker, std::size_t unit)
                      {
-                         //                         const FilesByOthers::Scope scope(folder);
+                         const FilesByOthers::Scope scope(folder);
                          if (!(plan.options.resume && stage.takeOver(unit)) && stage.hasWork(unit) &&
                              !stage.keep(unit))
                              stage.run(worker, unit);
