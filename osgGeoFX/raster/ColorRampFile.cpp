@@ -135,14 +135,19 @@ public:
     void take(const std::string& line)
     {
         if (!line.empty() && line[0] == '#') checkColorModel(line);
-        Words words = split(line.substr(0, commentOf(line)), " ,\t:\r");
+        // A label of GMT follows a semicolon.
+        const std::size_t end = std::min(commentOf(line), _isCpt ? line.find(';') : std::string::npos);
+        const Words words = split(line.substr(0, end), " ,\t:\r");
         if (words.empty() || words[0][0] == '/' || (words.size() == 1 && lower(words[0]) == "end")) return;
         if (lower(words[0]) == "interpolation")
             takeInterpolation(words);
         else if (_isCpt)
             takeSlice(words);
         else
+        {
+            checkComma(line);
             takeStop(words);
+        }
     }
 
     osg::ref_ptr<ColorTable> finish()
@@ -182,6 +187,7 @@ private:
     /// A line of the files that QGIS exports.
     void takeInterpolation(const Words& words)
     {
+        _isOfQgis = true;
         const std::string kind = words.size() == 2 ? lower(words[1]) : "";
         if (kind == "exact")
             _mode = ColorTable::EXACT;
@@ -191,10 +197,27 @@ private:
             throw Refusal{"the interpolation is not known; write INTERPOLATED, DISCRETE or EXACT."};
     }
 
+    /// "0,5 255 0 0" would be read as the value 0 and the color 5 255 0.
+    static void checkComma(const std::string& line)
+    {
+        const std::size_t first = line.find_first_not_of(" \t");
+        const std::size_t end = std::min(line.find_first_of(" \t\r", first), line.size());
+        const std::string word = line.substr(first, end - first);
+        const std::size_t comma = word.find(',');
+        const bool isLast = line.find_first_not_of(" \t\r", end) == std::string::npos;
+        if (comma == std::string::npos || isLast || word.find(',', comma + 1) != std::string::npos) return;
+        if (number(word.substr(0, comma)) && number(word.substr(comma + 1)))
+            throw Refusal{"the value is " + inQuotes(word) +
+                          "; write a point in numbers, or a comma behind each number."};
+    }
+
     void takeStop(const Words& words)
     {
+        const std::string key = lower(words[0]);
+        const bool isWord = key == "nv" || key == "default" || (key == "inf" && _isOfQgis);
         if (words.size() < 2)
             throw Refusal{inQuotes(words[0]) + " has no color; write value, red, green, blue."};
+        const double value = isWord ? 0.0 : stopValue(words[0]);
         osg::Vec4 color;
         std::size_t next = 2;
         if (const auto hexadecimal = ColorNames::hexadecimal(words[1]))
@@ -212,15 +235,14 @@ private:
             next = 4;
         }
         if (words.size() > next) color[3] = part(words[next]);
-        const std::string key = lower(words[0]);
         if (key == "nv")
             _noData = color;
         else if (key == "default")
             _below = _above = color;
-        else if (key == "inf" && _discrete)
-            _last = color;
+        else if (isWord)
+            _last = color; // between stops, the last one's color goes on anyway
         else
-            _stops.push_back({stopValue(words[0]), color});
+            _stops.push_back({value, color});
     }
 
     double stopValue(const std::string& word) const
@@ -272,11 +294,7 @@ private:
                 _noData = color;
             return;
         }
-        // A label follows a semicolon; L, U or B says which of a slice's ends get a number.
-        if (const auto label = std::find_if(words.begin(), words.end(),
-                                            [](const std::string& word) { return word[0] == ';'; });
-            label != words.end())
-            words.erase(label, words.end());
+        // L, U or B says which of a slice's ends get a number.
         if (words.size() % 2 == 1)
             if (words.back() == "L" || words.back() == "U" || words.back() == "B") words.pop_back();
         if (words.size() == 2) return takeCategory(words);
@@ -363,6 +381,7 @@ private:
 
     std::optional<ColorRampFile::Range> _range;
     bool _isCpt;
+    bool _isOfQgis = false; ///< whether it says how colors are interpolated
     bool _discrete = false; ///< QGIS's way of writing steps
     bool _descends = false; ///< whether the slices do
     ColorTable::Mode _mode = ColorTable::LINEAR;
@@ -371,6 +390,16 @@ private:
     osg::Vec4 _noData;
     std::optional<osg::Vec4> _below, _above, _last;
 };
+
+/// Takes a mark of the byte order out of the first line. Refuses what is no color table by its first line.
+void checkFirst(std::string& line)
+{
+    if (line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
+    if (line.find('\0') != std::string::npos)
+        throw Refusal{"its letters have two bytes, or it is no text; save it as UTF-8."};
+    if (!line.empty() && line[0] == '<')
+        throw Refusal{"it is XML and no color table; export the colors as text, or the style as SLD."};
+}
 
 std::string text(double value)
 {
@@ -412,7 +441,7 @@ osg::ref_ptr<ColorTable> ColorRampFile::read(const std::string& path, const std:
     {
         while (std::getline(stream, line))
         {
-            if (++count == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
+            if (++count == 1) checkFirst(line);
             parser.take(line);
         }
         count = 0;

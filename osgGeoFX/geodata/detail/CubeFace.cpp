@@ -23,7 +23,9 @@ MappingRaster::Window CubeFace::window(double texel)
 {
     // A face's edges bulge in its frame: their middles are at 45° of arc, its corners at 54.7°, and neither is farther than sin 45°
     // along one of the axes.
-    const double half = osg::WGS_84_RADIUS_EQUATOR * std::sin(osg::PI_4) + 4.0 * texel;
+    const double face = osg::WGS_84_RADIUS_EQUATOR * std::sin(osg::PI_4);
+    // The texels of a coarse raster may be so large that a border of four would lead beyond the globe.
+    const double half = face + std::min(4.0 * texel, face / 8.0);
     return {osg::Vec2d(-half, -half), osg::Vec2d(half, half), texel};
 }
 

@@ -311,6 +311,8 @@ void FrameRaster::giveWords(DataLayer& layer) const
 
 std::vector<double> FrameRaster::overviews() const
 {
+    // A virtual raster opens its sources to tell of their overviews.
+    const GdalErrorScope quiet;
     std::vector<double> factors;
     GDALRasterBand* const band = _chain.file().GetRasterBand(1);
     for (int i = 0; i < band->GetOverviewCount(); ++i)

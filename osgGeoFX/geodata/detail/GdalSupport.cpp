@@ -7,7 +7,9 @@
 #include <osgGeoFX/paging/FilesByOthers.h>
 #include <osgGeoFX/paging/ReadingFile.h>
 
+#include <cpl_conv.h>
 #include <cpl_error.h>
+#include <cpl_string.h>
 #include <cpl_vsi.h>
 
 #include <algorithm>
@@ -16,6 +18,7 @@
 #include <fstream>
 #include <memory>
 #include <mutex>
+#include <regex>
 
 namespace osgGeoFX
 {
@@ -159,6 +162,59 @@ void placeCsv(GDALDataset& dataset, const std::string& file)
 
 } // namespace
 
+namespace
+{
+
+/// GDAL's layout of OpenStreetMap's layers, which takes heights out of the tags, with them. Empty if there is none.
+std::string osmLayout()
+{
+    static const std::string name = []() -> std::string
+    {
+        const char* const usual = CPLFindFile("gdal", "osmconf.ini");
+        std::ifstream stream(usual ? usual : "");
+        std::string text;
+        for (std::string line; std::getline(stream, line); text += line + "\n")
+        {
+            const std::size_t at = line.find(",ele,");
+            if (line.rfind("ignore=", 0) == 0 && at != std::string::npos) line.erase(at, 4);
+        }
+        if (text.empty()) return {};
+        const std::string file = "/vsimem/osgGeoFX/osmconf.ini";
+        VSILFILE* const written = VSIFOpenL(file.c_str(), "wb");
+        if (!written) return {};
+        const bool whole = VSIFWriteL(text.data(), 1, text.size(), written) == text.size();
+        return VSIFCloseL(written) == 0 && whole ? file : std::string();
+    }();
+    return name;
+}
+
+/// GDAL would read lat="45,5" as 45.
+void checkCommas(const std::string& file)
+{
+    constexpr std::size_t most = 65536; // of the file's beginning
+    std::string text(most, '\0');
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    static const std::regex comma("[ \t\r\n](lat|lon)=[\"'][-+]?[0-9]+,[0-9]");
+    if (std::regex_search(text, comma))
+        throw BuildError(file +
+                         ": its degrees have decimal commas, behind which all would be lost; write points.");
+}
+
+/// What GDAL should know of a format.
+CPLStringList vectorOptions(const std::string& format)
+{
+    CPLStringList options;
+    if (format == "CSV")
+        for (const char* const* each = csvOptions; *each; ++each)
+            options.AddString(*each);
+    if (format == "OSM" && !osmLayout().empty()) options.SetNameValue("CONFIG_FILE", osmLayout().c_str());
+    return options;
+}
+
+} // namespace
+
 DatasetPtr openVectors(const std::string& file)
 {
     const ReadingFile reading(file);
@@ -166,10 +222,11 @@ DatasetPtr openVectors(const std::string& file)
     if (!fault.empty()) throw BuildError(file + ": " + fault + ".");
     const GdalErrorScope errors;
     GDALDriverH const driver = GDALIdentifyDriverEx(file.c_str(), GDAL_OF_VECTOR, nullptr, nullptr);
-    const bool isCsv = driver && EQUAL(GDALGetDriverShortName(driver), "CSV");
+    const std::string format = driver ? GDALGetDriverShortName(driver) : "";
     DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR, nullptr,
-                                         isCsv ? csvOptions : nullptr));
-    if (dataset && isCsv) placeCsv(*dataset, file);
+                                         vectorOptions(format).List()));
+    if (dataset && format == "CSV") placeCsv(*dataset, file);
+    if (dataset && format == "GPX") checkCommas(file);
     if (!dataset)
         throw BuildError(file + ": it is not vector data that GDAL can read (" + errors.message() +
                          "); check it with ogrinfo, or convert it with ogr2ogr.");

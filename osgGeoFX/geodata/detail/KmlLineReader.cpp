@@ -128,33 +128,51 @@ private:
         }
     }
 
+    /// Some write a space behind the commas, too.
     void takeCoordinates(std::string_view rest)
     {
         while (!(rest = trimmed(rest)).empty())
         {
-            const std::size_t length = std::min(rest.find_first_of(" \t\r\n"), rest.size());
+            const char* const spaces = " \t\r\n";
+            std::size_t length = std::min(rest.find_first_of(spaces), rest.size());
+            while (length < rest.size() && rest[length - 1] == ',')
+            {
+                const std::size_t next = std::min(rest.find_first_not_of(spaces, length), rest.size());
+                length = std::min(rest.find_first_of(spaces, next), rest.size());
+            }
             takeTuple(rest.substr(0, length), ",");
             rest.remove_prefix(length);
         }
     }
 
+    /// A place. Some write commas between places, too; then each has three numbers.
     void takeTuple(std::string_view tuple, const char* separators)
     {
-        osg::Vec3d place;
-        int count = 0;
-        for (std::string_view rest = tuple; !rest.empty() && count < 3; ++count)
+        std::string_view rest = tuple;
+        do
         {
-            const std::size_t length = std::min(rest.find_first_of(separators), rest.size());
-            const std::optional<double> value = numberOf(rest.substr(0, length));
-            if (!value) break;
-            place[count] = *value;
-            rest.remove_prefix(std::min(length + 1, rest.size()));
-            rest = trimmed(rest);
-        }
-        if (count < 2 || std::abs(place.x()) > 360.0 || std::abs(place.y()) > 90.0)
-            fail(line(),
-                 "the place \"" + std::string(tuple.substr(0, 60)) +
-                     "\" of a line is none; write longitude, latitude and height, degrees and metres.");
+            osg::Vec3d place;
+            int count = 0;
+            for (; !rest.empty() && count < 3; ++count)
+            {
+                const std::size_t length = std::min(rest.find_first_of(separators), rest.size());
+                const std::optional<double> value = numberOf(rest.substr(0, length));
+                if (!value) break;
+                place[count] = *value;
+                rest.remove_prefix(std::min(length + 1, rest.size()));
+                rest = trimmed(rest);
+            }
+            if (count < 2 || std::abs(place.x()) > 360.0 || std::abs(place.y()) > 90.0)
+                fail(line(),
+                     "the place \"" + std::string(tuple.substr(0, 60)) +
+                         "\" of a line is none; write longitude, latitude and height, degrees and metres.");
+            take(place);
+            if (count < 3) return;
+        } while (!rest.empty() && *separators == ',');
+    }
+
+    void take(const osg::Vec3d& place)
+    {
         if (++_places > _mostPlaces)
             fail(line(), "with this place, the lines of the file and of what it links have more than ten "
                          "million; simplify "

@@ -127,7 +127,9 @@ int KmlStream::line() const
 
 void KmlStream::fail(int line, const std::string& sentence) const
 {
-    throw BuildError(KmlFolder::plain(_document) + ":" + std::to_string(line) + ": " + sentence);
+    // A document type has no line.
+    throw BuildError(KmlFolder::plain(_document) + (line > 0 ? ":" + std::to_string(line) : "") + ": " +
+                     sentence);
 }
 
 bool KmlStream::isAt(std::initializer_list<const char*> names) const

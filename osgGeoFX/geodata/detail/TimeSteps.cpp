@@ -532,9 +532,10 @@ private:
             if (ending == each) return true;
         // World files: .tfw, .pgw, .jgw, .tifw …
         if (ending.size() >= 4 && ending.size() <= 6 && ending.back() == 'w' && ending != ".raw") return true;
-        // The header of a raster of plain numbers.
+        // The header of a raster of plain numbers, or what some programs write beside others.
         if (ending != ".hdr") return false;
-        for (const char* const each : {".bil", ".bip", ".bsq", ".flt", ".img", ".dat", ".raw", ""})
+        for (const char* const each : {".bil", ".bip", ".bsq", ".flt", ".img", ".dat", ".raw", ".dem", ".tif",
+                                       ".tiff", ".jpg", ".png", ""})
         {
             std::error_code fault;
             if (fs::is_regular_file(fs::path(file).replace_extension(each), fault)) return true;

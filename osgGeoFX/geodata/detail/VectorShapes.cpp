@@ -105,6 +105,10 @@ private:
         _longest = longestEdge(layer, srs);
         _styles = layer.GetStyleTable() ? layer.GetStyleTable() : _dataset->GetStyleTable();
         _name = layer.GetLayerDefn()->GetFieldIndex("name");
+        const GDALDriver* const driver = _dataset->GetDriver();
+        _isKml =
+            driver && (EQUAL(driver->GetDescription(), "LIBKML") || EQUAL(driver->GetDescription(), "KML"));
+        _altitudeMode = layer.GetLayerDefn()->GetFieldIndex("altitudeMode");
         OGRSpatialReference degrees;
         degrees.importFromEPSG(4326);
         forEachFeature(
@@ -416,7 +420,8 @@ private:
         if (!_toDegrees->Transform(1, &x, &y) || !std::isfinite(x) || !(std::abs(y) <= 90.0)) return;
         VectorShapes::Symbol symbol;
         symbol.place.set(x, y);
-        if (type == wkbPoint && OGR_GT_HasZ(geometry.getGeometryType()) && std::abs(point.getZ()) < 1e4)
+        if (type == wkbPoint && OGR_GT_HasZ(geometry.getGeometryType()) && std::abs(point.getZ()) < 1e4 &&
+            hasHeight(feature))
             symbol.height = point.getZ();
         if (_name >= 0 && feature.IsFieldSetAndNotNull(_name))
             symbol.name = cleanText(feature.GetFieldAsString(_name));
@@ -428,6 +433,12 @@ private:
         if (_result.symbols.size() > mostSymbols)
             throw BuildError(_result.file +
                              ": it has more than 100,000 symbols; choose some with ogr2ogr -where.");
+    }
+
+    /// Whether the third number of a feature's places is a height above the sea: in KML it is in one mode alone.
+    bool hasHeight(const OGRFeature& feature) const
+    {
+        return !_isKml || (_altitudeMode >= 0 && EQUAL(feature.GetFieldAsString(_altitudeMode), "absolute"));
     }
 
     /// By layers and passes, and within them by features.
@@ -479,7 +490,8 @@ private:
     OGRStyleTable* _styles = nullptr;
     bool _geographic = false;
     double _longest = 0.0;
-    int _name = -1;
+    int _name = -1, _altitudeMode = -1;
+    bool _isKml = false;
     OGRCoordinateTransformation* _toDegrees = nullptr;
     std::optional<std::vector<Found>> _shape;
 };
