@@ -187,8 +187,8 @@ private:
     /// A line of the files that QGIS exports.
     void takeInterpolation(const Words& words)
     {
-        _isOfQgis = true;
         const std::string kind = words.size() == 2 ? lower(words[1]) : "";
+        _mayBeOpen = kind != "exact";
         if (kind == "exact")
             _mode = ColorTable::EXACT;
         else if (kind == "discrete")
@@ -214,7 +214,7 @@ private:
     void takeStop(const Words& words)
     {
         const std::string key = lower(words[0]);
-        const bool isWord = key == "nv" || key == "default" || (key == "inf" && _isOfQgis);
+        const bool isWord = key == "nv" || key == "default" || (key == "inf" && _mayBeOpen);
         if (words.size() < 2)
             throw Refusal{inQuotes(words[0]) + " has no color; write value, red, green, blue."};
         const double value = isWord ? 0.0 : stopValue(words[0]);
@@ -381,9 +381,9 @@ private:
 
     std::optional<ColorRampFile::Range> _range;
     bool _isCpt;
-    bool _isOfQgis = false; ///< whether it says how colors are interpolated
-    bool _discrete = false; ///< QGIS's way of writing steps
-    bool _descends = false; ///< whether the slices do
+    bool _mayBeOpen = false; ///< whether the last value may be infinite, as QGIS writes it
+    bool _discrete = false;  ///< QGIS's way of writing steps
+    bool _descends = false;  ///< whether the slices do
     ColorTable::Mode _mode = ColorTable::LINEAR;
     Stops _stops;
     std::vector<Slice> _slices;
