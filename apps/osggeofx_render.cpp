@@ -194,7 +194,8 @@ void addOptions(CLI::App& app, Arguments& arguments)
     app.footer(
         "Without --view, --eye or --path the scene's home view is taken, or one that shows the whole scene. "
         "The same command gives the same bytes.\n"
-        "Exit code: 0; 1 if tiles or files did not arrive in time; 2 if the input, the output or the "
+        "Exit code: 0; 1 if tiles or files did not arrive in time, or could not be read (the picture is "
+        "coarser then); 2 if the input, the output or the "
         "machine's "
         "OpenGL is at fault.\n\n"
         "Examples:\n"
@@ -521,6 +522,15 @@ void run(Arguments& arguments, const geofx::plan::Division& division, geofx::ren
         else
             deadline.stop();
     };
+    std::string lack;
+    arguments.renderer.lacks = [&](const std::string& fault)
+    {
+        if (lack.empty()) lack = fault;
+    };
+    const auto checkData = [&]
+    {
+        if (!lack.empty()) throw Failure(tookTooLong, lack + " A coarser part stands in its place.");
+    };
     arguments.renderer.waits(true);
     if (!arguments.camera.path.empty() && arguments.camera.frames.empty() &&
         !(arguments.camera.framesASecond > 0.0))
@@ -574,6 +584,7 @@ void run(Arguments& arguments, const geofx::plan::Division& division, geofx::ren
     if (geofx::print::isPrint(arguments.print, arguments.output, size))
     {
         print(arguments, size, map, camera.view(0), *scene, page ? &*page : nullptr, division);
+        checkData();
         return;
     }
     {
@@ -581,6 +592,7 @@ void run(Arguments& arguments, const geofx::plan::Division& division, geofx::ren
         if (division.any())
         {
             divide(arguments, camera, pictures, files, division);
+            checkData();
             return;
         }
         for (unsigned int frame = camera.first(); frame <= camera.last(); ++frame)
@@ -590,6 +602,7 @@ void run(Arguments& arguments, const geofx::plan::Division& division, geofx::ren
         pictures.printValues();
     }
     geofx::layers::write(arguments.layers, *scene, size, options, map, camera.view(0));
+    checkData();
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 #include "viewer/ViewerSetup.h"
 
 #include <osgGeoFX/paging/FreedMemory.h>
+#include <osgGeoFX/paging/ReadingFile.h>
 #include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/Scene.h>
@@ -265,5 +266,12 @@ int main(int argc, char** argv)
     viewer.getCamera()->setProjectionMatrixAsPerspective(fieldOfView, aspect, 1.0, 1e6);
     geofx::viewer::setHome(*manipulators, *scene, fieldOfView, aspect);
     geofx::viewer::setManipulators(viewer, *manipulators, *scene->effects);
-    return viewer.run();
+    const int result = viewer.run();
+    // GDAL's readers cannot be stopped, and a silent service keeps them for half a minute.
+    if (!osgGeoFX::ReadingFile::longest().empty())
+    {
+        std::cout.flush();
+        std::_Exit(result);
+    }
+    return result;
 }

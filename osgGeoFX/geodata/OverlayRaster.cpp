@@ -6,6 +6,7 @@
 #include <osgGeoFX/geodata/detail/FrameRaster.h>
 #include <osgGeoFX/geodata/detail/KmlFolder.h>
 #include <osgGeoFX/geodata/detail/QuadMap.h>
+#include <osgGeoFX/geodata/detail/RasterReach.h>
 
 #include <cpl_string.h>
 #include <gdal_alg.h>
@@ -465,6 +466,17 @@ std::string sentenceOf(const BuildError& failure, const KmlOverlay& overlay)
 
 } // namespace
 
+GroundReach reachOf(const FrameRaster& raster)
+{
+    FrameCrs degrees;
+    degrees.definition = "EPSG:4326";
+    const osg::Vec2d size = raster.size();
+    const std::optional<GroundReach> reach = reachOver(raster.placer(degrees), size.x(), size.y());
+    if (!reach)
+        raster.fail("no part of it lies on the Earth; correct its georeference with gdal_translate -a_ullr");
+    return *reach;
+}
+
 std::optional<OverlayRaster> OverlayRaster::read(const KmlOverlay& overlay, const MappingFrame& frame,
                                                  const Options& options, std::string& error)
 {
@@ -500,15 +512,7 @@ std::optional<GroundReach> OverlayRaster::reachOf(const std::string& file, std::
     initialiseGdal();
     try
     {
-        const FrameRaster raster(file, std::nullopt);
-        FrameCrs degrees;
-        degrees.definition = "EPSG:4326";
-        const osg::Vec2d size = raster.size();
-        const std::optional<GroundReach> reach = reachOver(raster.placer(degrees), size.x(), size.y());
-        if (!reach)
-            raster.fail(
-                "no part of it lies on the Earth; correct its georeference with gdal_translate -a_ullr");
-        return reach;
+        return osgGeoFX::reachOf(FrameRaster(file, std::nullopt));
     }
     catch (const BuildError& failure)
     {

@@ -10,6 +10,7 @@
 #include <osgGeoFX/geodata/TiledRaster.h>
 #include <osgGeoFX/geodata/TiledVectors.h>
 #include <osgGeoFX/geodata/detail/CubeFace.h>
+#include <osgGeoFX/geodata/detail/RasterFile.h>
 #include <osgGeoFX/raster/ColorRampFile.h>
 
 #include <osg/CoordinateSystemNode>
@@ -50,13 +51,14 @@ class Work
 {
 public:
     Work(const std::string& file, const OverlayReader::Options& options, const OverlayReader& reader)
-        : _file(file), _options(options), _globe(reader.globe), _wkt(reader.wkt), frames(reader.frames)
+        : _file(file), _raster(file), _options(options), _globe(reader.globe), _wkt(reader.wkt),
+          frames(reader.frames)
     {
     }
 
     void read()
     {
-        if (!_options.layer.empty()) return readVectors();
+        if (!_options.layer.empty()) return readLayer();
         bool isNone = false;
         try
         {
@@ -74,7 +76,23 @@ public:
     }
 
 private:
+    /// The layer of vector data, or the variable of a raster.
+    void readLayer()
+    {
+        try
+        {
+            readVectors();
+        }
+        catch (const BuildError&)
+        {
+            if (TiledVectors::isVectors(_file) || !RasterFile::isRaster(_file)) throw;
+            _raster += ":" + _options.layer;
+            readRaster();
+        }
+    }
+
     const std::string& _file;
+    std::string _raster; ///< the file, or a variable of it
     const OverlayReader::Options& _options;
     const bool _globe;
     const std::string& _wkt;
@@ -271,18 +289,18 @@ private:
     {
         std::string error;
         GroundOverlay overlay;
-        overlay.name = std::filesystem::path(_file).filename().string();
+        overlay.name = std::filesystem::path(_raster).filename().string();
         GroundReach reach;
         if (_globe)
         {
-            const std::optional<GroundReach> found = OverlayRaster::reachOf(_file, error);
+            const std::optional<GroundReach> found = OverlayRaster::reachOf(_raster, error);
             if (!found) throw BuildError(error);
             reach = *found;
         }
         else if (frames.empty())
         {
             MappingFrame frame = frameOf(0);
-            if (!MappingRaster::moveToMiddle(_file, frame, error)) throw BuildError(error);
+            if (!MappingRaster::moveToMiddle(_raster, frame, error)) throw BuildError(error);
             frames.push_back(frame.origin);
         }
         const std::size_t before = overlays.size();
@@ -295,7 +313,7 @@ private:
                 options.window->texel =
                     std::min(window->texel, (window->high.x() - window->low.x()) / leastSide);
             if (_options.paged) overlay.tiles = tilesIn(frame, options.maxSide);
-            const std::optional<MappingRaster> raster = MappingRaster::read(_file, frame, options, error);
+            const std::optional<MappingRaster> raster = MappingRaster::read(_raster, frame, options, error);
             if (!raster) throw BuildError(error);
             const osg::Vec2d& low = raster->low;
             const osg::Vec2d& high = raster->high;
@@ -304,7 +322,7 @@ private:
             overlay.lowest = raster->lowest;
             overlay.highest = raster->highest;
         };
-        addParts(reach, _file, overlay, take);
+        addParts(reach, _raster, overlay, take);
         giveColors(before);
     }
 
@@ -414,7 +432,7 @@ private:
     {
         constexpr int coarse = 512;
         std::string error;
-        osg::ref_ptr<RasterTiles> tiles = TiledRaster::open(_file, frame, std::nullopt, error);
+        osg::ref_ptr<RasterTiles> tiles = TiledRaster::open(_raster, frame, std::nullopt, error);
         if (!tiles)
         {
             // What cannot be read at all says so below.

@@ -36,7 +36,8 @@ public:
         /// Whether a raster with a georeference that has more pixels than `maxSide` along a side gives its tiles, too
         /// (GroundOverlay::tiles); its layer is a coarse picture then.
         bool paged = false;
-        std::string layer; ///< of vector data: one layer, and a raster is refused; empty: all
+        std::string
+            layer; ///< of vector data: one layer; of a raster: a variable or table; empty: all, or the first
         std::string style; ///< of vector data: an SLD file; empty: what TiledVectors says
         /// Of a file's overlays together, a picture that several of them show counted once; those that come later are left out, with a
         /// notice. 2^27 texels have 512 MiB.

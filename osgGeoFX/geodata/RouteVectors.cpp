@@ -10,6 +10,7 @@
 #include <osgGeoFX/geodata/detail/KmlFolder.h>
 #include <osgGeoFX/geodata/detail/KmlLineReader.h>
 #include <osgGeoFX/geodata/detail/LostFixes.h>
+#include <osgGeoFX/geodata/detail/ReadingErrors.h>
 #include <osgGeoFX/geodata/detail/Remarks.h>
 
 #include <cpl_vsi.h>
@@ -300,8 +301,9 @@ private:
     void checkReading(const GdalErrorScope& errors) const
     {
         if (errors.failed())
-            throw BuildError(_file + ": its features cannot be read (" + errors.message() +
-                             "); the file may be cut short: copy or export it again.");
+            throw BuildError(
+                _file + ": its features cannot be read" +
+                causeAndRemedy(errors.message(), "the file may be cut short: copy or export it again") + ".");
     }
 
     const std::string& _file;

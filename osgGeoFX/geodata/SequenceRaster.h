@@ -35,13 +35,23 @@ struct OSGGEOFXDATA_EXPORT SequenceRaster
     osg::ref_ptr<SequenceSteps> steps;
     osg::Vec2d low; ///< the rectangle's corners in the frame, metres
     osg::Vec2d high;
+    /// The other parts of rasters that reach around the globe, each in a frame of its own.
+    struct Part
+    {
+        LocalOrigin origin;
+        osg::ref_ptr<SequenceSteps> steps;
+        osg::Vec2d low, high;
+    };
+    std::vector<Part> others;
     double lowest = 0.0; ///< range of the values of some steps; both 0 if there are none
     double highest = 0.0;
     std::string variable; ///< its name; empty for files and bands
     std::string unit;     ///< of its values; empty if there is none
 
     /// Returns nothing, with a sentence in `error` that names file and remedy, if the files cannot be used. With `moves`, the
-    /// frame's origin is moved to the middle of the rasters first.
+    /// frame's origin is moved to the middle of the rasters first. On a globe, rasters that reach farther than 60° of arc around their middle
+    /// are then six parts, as OverlayReader's, of which the frame has the first; without `moves` they are the part of the frame's origin, which must be
+    /// one of the six.
     static std::optional<SequenceRaster> open(const std::string& file, MappingFrame& frame, bool moves,
                                               const Options& options, std::string& error);
     /// "FILE" or "FILE:VARIABLE" in two parts.

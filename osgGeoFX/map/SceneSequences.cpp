@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -47,33 +49,42 @@ bool SceneSequences::add(const std::string& file, const Options& options, std::s
     request.wkt = _wkt;
     if (!request.read(error)) return false;
 
-    const osg::ref_ptr<LayerSequence> sequence = new LayerSequence(request.steps);
-    const std::string fault = _player->faultOf(*sequence);
-    if (!fault.empty())
+    std::vector<SequenceFile::Part> parts = request.others;
+    parts.insert(parts.begin(), {request.origin, request.steps, request.low, request.high});
+    std::vector<std::pair<osg::ref_ptr<ProjectiveMappings>, osg::ref_ptr<LayerSequence>>> made;
+    for (const SequenceFile::Part& part : parts)
     {
-        error = file + ": " + fault;
-        return false;
+        const osg::ref_ptr<LayerSequence> sequence = new LayerSequence(part.steps);
+        const std::string fault = _player->faultOf(*sequence);
+        if (!fault.empty())
+        {
+            error = file + ": " + fault;
+            return false;
+        }
+        const osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
+        const osg::Vec2d half = (part.high - part.low) / 2.0;
+        if (!mapping->setRectangle(part.low + half, half.x(), half.y()))
+        {
+            error = file + ": it covers no area on the ground; check it with gdalinfo.";
+            return false;
+        }
+        mapping->setName(request.variable.empty() ? file : request.variable);
+        LayerWords::setUnit(*sequence->getLayer(), request.unit);
+        mapping->setLayer(sequence->getLayer());
+        mapping->setOpacity(options.opacity);
+        setColors(*mapping, request);
+        const osg::ref_ptr<ProjectiveMappings> effect = new ProjectiveMappings;
+        effect->setName("sequence");
+        effect->setLocalOrigin(part.origin);
+        effect->addMapping(mapping);
+        made.emplace_back(effect, sequence);
     }
-    const osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
-    const osg::Vec2d half = (request.high - request.low) / 2.0;
-    if (!mapping->setRectangle(request.low + half, half.x(), half.y()))
+    for (const auto& [effect, sequence] : made)
     {
-        error = file + ": it covers no area on the ground; check it with gdalinfo.";
-        return false;
+        _scene->addEffect(effect);
+        _player->add(sequence, LayerPlayer::usualTime);
+        sequence->update();
     }
-    mapping->setName(request.variable.empty() ? file : request.variable);
-    LayerWords::setUnit(*sequence->getLayer(), request.unit);
-    mapping->setLayer(sequence->getLayer());
-    mapping->setOpacity(options.opacity);
-    setColors(*mapping, request);
-    const osg::ref_ptr<ProjectiveMappings> effect = new ProjectiveMappings;
-    effect->setName("sequence");
-    effect->setLocalOrigin(request.origin);
-    effect->addMapping(mapping);
-    _scene->addEffect(effect);
-
-    _player->add(sequence, LayerPlayer::usualTime);
-    sequence->update();
     return true;
 }
 

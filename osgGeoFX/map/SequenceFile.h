@@ -10,6 +10,7 @@
 #include <osg/Vec2d>
 
 #include <string>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -28,7 +29,15 @@ struct OSGGEOFXMAPS_EXPORT SequenceFile
     LocalOrigin origin; ///< of the frame
 
     osg::ref_ptr<SequenceSteps> steps;
-    osg::Vec2d low, high;               ///< the rectangle's corners in the frame, metres
+    osg::Vec2d low, high; ///< the rectangle's corners in the frame, metres
+    /// The other parts of rasters that reach around the globe, each in a frame of its own.
+    struct Part
+    {
+        LocalOrigin origin;
+        osg::ref_ptr<SequenceSteps> steps;
+        osg::Vec2d low, high;
+    };
+    std::vector<Part> others;
     double lowest = 0.0, highest = 0.0; ///< of the values
     osg::ref_ptr<ColorTable> table;
     std::string variable, unit;

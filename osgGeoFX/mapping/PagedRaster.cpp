@@ -420,10 +420,12 @@ private:
         }
         _statistics.wanted = static_cast<int>(_wanted.size());
         _statistics.waiting = 0;
+        _statistics.fault.clear();
         // Coarser ones, too: they show where a finer one cannot be read.
         for (const MappingPage& page : missing())
         {
             if (!_store.isDone(page)) ++_statistics.waiting;
+            if (_statistics.fault.empty()) _statistics.fault = _store.faultOf(page);
         }
         _statistics.settled = same && _statistics.waiting == 0 && !_pending;
     }

@@ -70,16 +70,19 @@ public:
 
     struct Statistics
     {
-        int shown = 0;          ///< tiles and parts of coarser ones
-        int wanted = 0;         ///< tiles that the cameras need now
-        int waiting = 0;        ///< tiles that are not read yet, of these and above them
-        int inMemory = 0;       ///< tiles
-        int failed = 0;         ///< tiles that cannot be read; coarser ones show in their place
+        int shown = 0;    ///< tiles and parts of coarser ones
+        int wanted = 0;   ///< tiles that the cameras need now
+        int waiting = 0;  ///< tiles that are not read yet, of these and above them
+        int inMemory = 0; ///< tiles
+        int failed = 0;   ///< tiles that could not be read when last tried; coarser ones show in their place
         std::size_t read = 0;   ///< tiles, since the beginning
         double megabytes = 0.0; ///< of main memory and the GPU
         /// The last frame showed all that it needs, as fine as it needs it; a picture that is coarser for lack of memory, too.
         bool settled = false;
         bool coarser = false; ///< for lack of memory
+        /// Why a tile that the last frame needed could not be read; empty if all could. It is tried again while a camera needs it, after a
+        /// second and then after times that double, up to a minute.
+        std::string fault;
     };
     Statistics statistics() const;
 

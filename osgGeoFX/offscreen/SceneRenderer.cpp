@@ -357,6 +357,8 @@ osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double 
     statistics.bytesRead = progress.bytesRead;
     statistics.leastTriangles = parts.leastTriangles();
     if (parts.options.waits) parts.options.waits(false);
+    const std::string fault = parts.options.lacks ? faultOfData(*parts.effects) : std::string();
+    if (!fault.empty()) parts.options.lacks(fault);
     return image;
 }
 

@@ -65,6 +65,8 @@ public:
         double timeout = 600.0; ///< seconds for each image
         /// Called with true when the wait for an image begins, and with false when the image is there.
         std::function<void(bool)> waits;
+        /// Called for each image that lacks a part of a raster, with the reason (faultOfData()).
+        std::function<void(const std::string&)> lacks;
         bool countTriangles = false; ///< fill triangles, drawables and tilesDrawn; costs a little
         bool leastTriangles = false; ///< fill leastTriangles; reads the whole database first
         ImageCapture::Format format = ImageCapture::Format::Rgb; ///< Rgb16 draws with 16 bits, too

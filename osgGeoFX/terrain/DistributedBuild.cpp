@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/DistributedBuild.h>
 
+#include <osgGeoFX/geodata/detail/RasterFile.h>
 #include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 #include <osgGeoFX/terrain/detail/PlanFile.h>
@@ -19,14 +20,16 @@ namespace
 namespace fs = std::filesystem;
 
 /// The same file, whatever the folder that a process runs in.
-void makeAbsolute(std::string& file)
+void makeAbsolute(std::string& name)
 {
+    const auto [file, variable] = RasterFile::parse(name);
     const auto legends = readyLegends();
     if (file.empty() || file.rfind("/vsi", 0) == 0 ||
         std::find(legends.begin(), legends.end(), file) != legends.end())
         return;
     // What is no file is a name that GDAL alone understands.
-    if (fs::exists(file)) file = fs::absolute(file).lexically_normal().string();
+    if (fs::exists(file))
+        name = fs::absolute(file).lexically_normal().string() + (variable.empty() ? "" : ":" + variable);
 }
 
 } // namespace

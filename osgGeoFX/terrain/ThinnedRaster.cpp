@@ -3,6 +3,7 @@
 #include <osgGeoFX/terrain/ThinnedRaster.h>
 
 #include <osgGeoFX/geodata/detail/Lengths.h>
+#include <osgGeoFX/geodata/detail/RasterFile.h>
 #include <osgGeoFX/geodata/detail/RasterMask.h>
 #include <osgGeoFX/geodata/detail/RasterSource.h>
 #include <osgGeoFX/terrain/detail/WaterFinder.h>
@@ -32,18 +33,6 @@ constexpr double earthRadius = 6378137.0;
 constexpr double leastDepth = 10.0;
 /// As BuildOptions::lakeArea; only the sea matters here.
 constexpr double lakeArea = 2e5;
-
-DatasetPtr open(const std::string& file)
-{
-    initialiseGdal();
-    GdalErrorScope errors;
-    DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
-    if (!dataset)
-        throw BuildError(
-            file + ": cannot be read as a raster; check the path, or convert the file with gdal_translate" +
-            (errors.failed() ? " (" + errors.message() + ")." : "."));
-    return dataset;
-}
 
 /// From the values of a band to metres.
 struct HeightScale
@@ -142,7 +131,8 @@ ThinnedRaster::Size ThinnedRaster::look(const std::string& file)
 {
     const GdalErrorScope quiet; // also where a file's metadata are read late
     const Footprint footprint = RasterSource(file, RasterKind::Elevation).footprint(GridCrs::geocentric());
-    const DatasetPtr dataset = open(file);
+    const DatasetChain chain = RasterFile::open(file);
+    GDALDataset* const dataset = &chain.top();
     const double metre = osg::DegreesToRadians(earthRadius);
     const double middle = osg::DegreesToRadians(0.5 * (footprint.south + footprint.north));
     return {dataset->GetRasterXSize(), dataset->GetRasterYSize(),
@@ -154,7 +144,8 @@ ThinnedRaster::Cut ThinnedRaster::cut(const std::string& file, const std::vector
                                       int factor)
 {
     const GdalErrorScope quiet;
-    const DatasetPtr dataset = open(file);
+    const DatasetChain chain = RasterFile::open(file);
+    GDALDataset* const dataset = &chain.top();
     const int columns = dataset->GetRasterXSize(), rows = dataset->GetRasterYSize();
     Cut result{0, 0, columns, rows, std::max(factor, 1)};
     if (!places.empty())
@@ -162,8 +153,7 @@ ThinnedRaster::Cut ThinnedRaster::cut(const std::string& file, const std::vector
         GdalErrorScope errors;
         char** options = CSLSetNameValue(nullptr, "DST_SRS", "OGC:CRS84");
         const std::unique_ptr<void, void (*)(void*)> transformer(
-            GDALCreateGenImgProjTransformer2(dataset.get(), nullptr, options),
-            GDALDestroyGenImgProjTransformer);
+            GDALCreateGenImgProjTransformer2(dataset, nullptr, options), GDALDestroyGenImgProjTransformer);
         CSLDestroy(options);
         if (!transformer)
             throw BuildError(file +
@@ -203,9 +193,8 @@ void ThinnedRaster::write(const std::string& file, const Cut& cut, const std::st
                           const std::function<bool(double)>& progress)
 {
     const GdalErrorScope quiet;
-    DatasetChain chain;
-    chain.add(open(file));
-    auto mask = std::make_unique<RasterMask>(chain.file(), 1);
+    DatasetChain chain = RasterFile::open(file);
+    auto mask = std::make_unique<RasterMask>(chain.top(), 1);
     if (!mask->isEmpty() && !mask->isNoDataValue())
         RasterMask::addTo(chain, std::move(mask), RasterMask::Form::NOT_A_NUMBER);
     std::vector<std::string> words = {

@@ -8,8 +8,30 @@
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/scene/EffectScene.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace osgGeoFX
 {
+
+namespace
+{
+
+/// The shown rasters that are larger than memory.
+std::vector<const PagedRaster*> rastersOf(EffectScene& scene)
+{
+    std::vector<const PagedRaster*> rasters;
+    for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
+    {
+        const auto* mappings = dynamic_cast<const ProjectiveMappings*>(scene.getEffect(i));
+        if (!mappings || !mappings->isActive()) continue;
+        for (unsigned int k = 0; k < mappings->getNumRasters(); ++k)
+            if (mappings->getRaster(k)->getMapping()->getEnabled()) rasters.push_back(mappings->getRaster(k));
+    }
+    return rasters;
+}
+
+} // namespace
 
 bool hasAllData(EffectScene& scene)
 {
@@ -18,17 +40,19 @@ bool hasAllData(EffectScene& scene)
         for (unsigned int i = 0; i < player->getNumSequences(); ++i)
             if (!player->getSequence(i)->settled()) return false;
     }
-    for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
+    const std::vector<const PagedRaster*> rasters = rastersOf(scene);
+    return std::all_of(rasters.begin(), rasters.end(),
+                       [](const PagedRaster* raster) { return raster->statistics().settled; });
+}
+
+std::string faultOfData(EffectScene& scene)
+{
+    for (const PagedRaster* const raster : rastersOf(scene))
     {
-        const auto* mappings = dynamic_cast<const ProjectiveMappings*>(scene.getEffect(i));
-        if (!mappings || !mappings->isActive()) continue;
-        for (unsigned int k = 0; k < mappings->getNumRasters(); ++k)
-        {
-            const PagedRaster& raster = *mappings->getRaster(k);
-            if (raster.getMapping()->getEnabled() && !raster.statistics().settled) return false;
-        }
+        const std::string fault = raster->statistics().fault;
+        if (!fault.empty()) return fault;
     }
-    return true;
+    return {};
 }
 
 } // namespace osgGeoFX

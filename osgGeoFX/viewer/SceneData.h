@@ -4,6 +4,8 @@
 
 #include <osgGeoFX/Export.h>
 
+#include <string>
+
 namespace osgGeoFX
 {
 
@@ -13,5 +15,10 @@ class EffectScene;
 /// (PagedRaster), and the steps of layers in time (LayerSequence). What a pager reads is PagerMonitor's matter. Between frames.
 /// @ingroup viewer
 OSGGEOFX_EXPORT bool hasAllData(EffectScene& scene);
+
+/// Why the last frame lacks a part of a raster that is larger than memory, as a sentence (PagedRaster::Statistics); empty if none does. Between
+/// frames.
+/// @ingroup viewer
+OSGGEOFX_EXPORT std::string faultOfData(EffectScene& scene);
 
 } // namespace osgGeoFX

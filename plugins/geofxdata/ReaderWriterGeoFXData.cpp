@@ -287,6 +287,14 @@ private:
         const std::optional<SequenceRaster> raster =
             SequenceRaster::open(file, frame, request->moves, how, error);
         if (!raster) return error;
+        if constexpr (std::is_same_v<Request, SequenceFile>)
+            for (const SequenceRaster::Part& part : raster->others)
+                request->others.push_back({part.origin, part.steps, part.low, part.high});
+        else if (!raster->others.empty())
+            return file + ": it reaches around the globe, which a <projectiveMappings> has no room for; show "
+                          "it with "
+                          "--sequence, or cut a part out with gdal_translate -projwin, or gdalmdimtranslate "
+                          "-subset.";
         request->origin = frame.origin;
         request->steps = raster->steps;
         request->low = raster->low;

@@ -509,6 +509,86 @@ TEST_F(SequenceRasters, ValuesThatAttributesCallInvalidAreNone)
     EXPECT_TRUE(std::isnan(*reinterpret_cast<const float*>(none->data(none->s() / 2, none->t() / 2))));
 }
 
+// ERA5, GFS and CMIP: cells that are centred on the poles, from 0 or from −180 degrees on.
+TEST_F(SequenceRasters, DataOfTheWorldAreSixParts)
+{
+    const auto valueAt = [](double longitude, double latitude, int step)
+    {
+        return 1000.0 * step + latitude +
+               20.0 * std::cos(osg::DegreesToRadians(longitude)) * std::cos(osg::DegreesToRadians(latitude));
+    };
+    for (const double first : {0.0, -180.0})
+    {
+        SCOPED_TRACE(first);
+        const std::filesystem::path folder = path(first == 0.0 ? "east" : "west");
+        std::filesystem::create_directory(folder);
+        for (int step = 0; step < 2; ++step)
+        {
+            TestRaster world(144, 73);
+            world.placed(first - 1.25, 91.25, 2.5, 2.5)
+                .crs("EPSG:4326")
+                .fill([&](int column, int row, int)
+                      { return valueAt(first + 2.5 * column, 90.0 - 2.5 * row, step); });
+            world.write(folder / (step == 0 ? "a.tif" : "b.tif"));
+        }
+        MappingFrame frame;
+        std::string error;
+        const std::optional<SequenceRaster> raster = opened(folder.string(), frame, error);
+        ASSERT_TRUE(raster) << error;
+        ASSERT_EQ(raster->others.size(), 5u);
+        EXPECT_NEAR(raster->lowest, -90.0 - 20.0, 22.0);
+        EXPECT_NEAR(raster->highest, 1000.0 + 90.0 + 20.0, 22.0);
+        std::vector<SequenceRaster::Part> parts = raster->others;
+        parts.push_back({frame.origin, raster->steps, raster->low, raster->high});
+        std::vector<osg::ref_ptr<osg::Image>> images;
+        for (const SequenceRaster::Part& part : parts)
+            images.push_back(part.steps->read(1, error));
+        for (double latitude = -88.0; latitude < 90.0; latitude += 11.0)
+        {
+            for (double longitude = -175.0; longitude < 180.0; longitude += 35.0)
+            {
+                int shown = 0;
+                for (std::size_t i = 0; i < parts.size(); ++i)
+                {
+                    ASSERT_TRUE(images[i]) << error;
+                    const LocalOrigin& origin = parts[i].origin;
+                    const double x = osg::DegreesToRadians(longitude) - origin.longitude,
+                                 y = osg::DegreesToRadians(latitude);
+                    // On a sphere that is near enough for cells of 278 km.
+                    const osg::Vec2d place(std::cos(y) * std::sin(x),
+                                           std::sin(y) * std::cos(origin.latitude) -
+                                               std::cos(y) * std::sin(origin.latitude) * std::cos(x));
+                    const double facing = std::sin(y) * std::sin(origin.latitude) +
+                                          std::cos(y) * std::cos(origin.latitude) * std::cos(x);
+                    if (facing < 0.5) continue;
+                    const osg::Vec2d metres = place * 6371000.0;
+                    const int column =
+                                  static_cast<int>((metres.x() - parts[i].low.x()) /
+                                                   (parts[i].high.x() - parts[i].low.x()) * images[i]->s()),
+                              row = static_cast<int>((metres.y() - parts[i].low.y()) /
+                                                     (parts[i].high.y() - parts[i].low.y()) * images[i]->t());
+                    if (column < 0 || row < 0 || column >= images[i]->s() || row >= images[i]->t()) continue;
+                    const auto value = static_cast<double>(*reinterpret_cast<const float*>(
+                        images[i]->data(static_cast<unsigned int>(column), static_cast<unsigned int>(row))));
+                    if (std::isnan(value)) continue;
+                    ++shown;
+                    EXPECT_NEAR(value, valueAt(longitude, latitude, 1), 2.5) << longitude << ", " << latitude;
+                }
+                EXPECT_GE(shown, 1) << longitude << ", " << latitude;
+                EXPECT_LE(shown, 2) << longitude << ", " << latitude;
+            }
+        }
+        // As a file of OSG's opens it again: by the frame of a part.
+        MappingFrame again;
+        again.origin = raster->others[0].origin;
+        const std::optional<SequenceRaster> part =
+            SequenceRaster::open(folder.string(), again, false, {"", 200}, error);
+        ASSERT_TRUE(part) << error;
+        EXPECT_TRUE(part->others.empty());
+        EXPECT_EQ(part->low, raster->others[0].low);
+    }
+}
+
 TEST_F(SequenceRasters, WhatIsWrongIsSaid)
 {
     const std::string good = write(path("good.nc"));
@@ -529,14 +609,14 @@ TEST_F(SequenceRasters, WhatIsWrongIsSaid)
     one.placed(west, south, 0.1, 0.1).crs("EPSG:4326");
     EXPECT_TRUE(contains(faultOf(one.write(path("one.tif"))), "--mapping"));
     EXPECT_TRUE(contains(faultOf(path("one.tif").string(), "rain"), "no variables"));
-    // On a globe, half of a map of the world would lie on the other side of its frame.
+    // On a globe, half of a map of the world would lie on the other side of a frame that is given.
     MappingFrame globe;
-    globe.globe = true;
+    globe.origin = LocalOrigin::onGlobe(0.1, 0.2);
     std::string reach;
     std::filesystem::create_directory(path("world"));
     TestRaster(36, 18).placed(-180.0, 90.0, 10.0, 10.0).crs("EPSG:4326").write(path("world") / "a.tif");
     TestRaster(36, 18).placed(-180.0, 90.0, 10.0, 10.0).crs("EPSG:4326").write(path("world") / "b.tif");
-    EXPECT_FALSE(SequenceRaster::open(path("world").string(), globe, true, {}, reach));
+    EXPECT_FALSE(SequenceRaster::open(path("world").string(), globe, false, {}, reach));
     EXPECT_TRUE(contains(reach, "-projwin")) << reach;
     // A step that goes bad later is said when it is read, and the others stay.
     std::filesystem::create_directory(path("steps"));

@@ -66,7 +66,7 @@ public:
     }
 
     GLenum format = GL_RGBA;
-    double brokenBelow = 0.0; ///< tiles smaller than this cannot be read
+    std::atomic<double> brokenBelow{0.0}; ///< tiles smaller than this cannot be read
     std::atomic<int> reads{0};
     std::atomic<std::int64_t> texels{0};
 
@@ -216,6 +216,26 @@ TEST_F(PagedRasters, TilesThatCannotBeReadLeaveCoarseOnes)
     EXPECT_NE(said[0].find("ortho.tif: its pixels cannot be read; mend it."), std::string::npos) << said[0];
     EXPECT_GT(_raster->statistics().failed, 0);
     EXPECT_EQ(wrong(*image, 1.0, 12.0), 0) << "the finest one that can be read";
+}
+
+TEST_F(PagedRasters, TilesThatFailAreReadAgain)
+{
+    add();
+    _tiles->brokenBelow = 100.0;
+    lookDown({0.0, 0.0}, 0.05);
+    watch().messagesOf([&] { drawSettled(); });
+    EXPECT_GT(_raster->statistics().failed, 0);
+    EXPECT_EQ(_raster->statistics().fault, "ortho.tif: its pixels cannot be read; mend it.");
+    EXPECT_EQ(faultOfData(*_scene), _raster->statistics().fault);
+    _tiles->brokenBelow = 0.0;
+    for (int i = 0; i < 500 && _raster->statistics().failed > 0; ++i)
+    {
+        draw();
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_EQ(_raster->statistics().failed, 0);
+    EXPECT_EQ(wrong(*drawSettled()), 0);
+    EXPECT_EQ(faultOfData(*_scene), "");
 }
 
 TEST_F(PagedRasters, FollowDeformations)

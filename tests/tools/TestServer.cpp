@@ -45,7 +45,19 @@ std::string lengthOf(const std::string& bytes)
 
 } // namespace
 
-TestServer::TestServer(std::filesystem::path folder) : _folder(std::move(folder))
+TestServer::TestServer(std::filesystem::path folder)
+    : TestServer(
+          [folder = std::move(folder)](const std::string& name) -> std::optional<std::string>
+          {
+              // Folders can be opened, too.
+              if (!std::filesystem::is_regular_file(folder / name)) return std::nullopt;
+              std::ifstream stream(folder / name, std::ios::binary);
+              return std::string(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+          })
+{
+}
+
+TestServer::TestServer(Content content) : _content(std::move(content))
 {
     start();
 }
@@ -65,9 +77,10 @@ std::string TestServer::url(const std::string& name) const
     return "http://" + address() + "/" + name;
 }
 
-void TestServer::setFault(Fault fault, const std::string& name)
+void TestServer::setFault(Fault fault, const std::string& name, std::size_t times)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
+    _times = times;
     _fault = fault;
     _faulty = name;
 }
@@ -186,27 +199,29 @@ bool TestServer::answer(int socket, const std::string& name)
     {
         const std::lock_guard<std::mutex> lock(_mutex);
         _requests.push_back(name);
-        if (name.find(_faulty) != std::string::npos) fault = _fault;
+        if (_times > 0 && name.find(_faulty) != std::string::npos)
+        {
+            fault = _fault;
+            --_times;
+        }
         delay = _delay;
     }
     std::this_thread::sleep_for(delay);
-    std::ifstream stream;
-    // Folders can be opened, too.
-    if (std::filesystem::is_regular_file(_folder / name)) stream.open(_folder / name, std::ios::binary);
-    std::string bytes;
-    if (stream.is_open())
-        bytes.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+    const std::optional<std::string> found = _content(name);
+    const std::string bytes = found.value_or("");
     const std::string half = bytes.substr(0, bytes.size() / 2);
     const std::string page = "<html>Welcome to the network of this hotel.</html>";
     switch (fault)
     {
     case Fault::None:
-        if (!stream.is_open()) break;
+        if (!found) break;
         return send(socket, head("200 OK", lengthOf(bytes)) + bytes);
     case Fault::NotFound:
         break;
     case Fault::Broken:
         return send(socket, head("500 Internal Server Error", "Content-Length: 0\r\n"));
+    case Fault::Busy:
+        return send(socket, head("503 Service Unavailable", "Content-Length: 0\r\n"));
     case Fault::Truncated:
         send(socket, head("200 OK", lengthOf(bytes)) + half);
         return false;

@@ -4,7 +4,9 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/CoordinateText.h>
+#include <osgGeoFX/geodata/detail/RasterFile.h>
 #include <osgGeoFX/geodata/detail/RasterMask.h>
+#include <osgGeoFX/geodata/detail/ReadingErrors.h>
 #include <osgGeoFX/geodata/detail/VirtualRaster.h>
 #include <osgGeoFX/mapping/LayerWords.h>
 #include <osgGeoFX/paging/ReadingFile.h>
@@ -17,11 +19,11 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <limits>
 #include <map>
+#include <thread>
 #include <utility>
 
 namespace osgGeoFX
@@ -132,65 +134,6 @@ VectorTarget vectorTargetOf(const MappingFrame& frame, const std::string& file)
     return target;
 }
 
-namespace
-{
-
-/// GDAL puts the tiles of WMTS and XYZ services into the folder that a program happens to run in, unless it is told another one.
-void chooseTileCache()
-{
-    constexpr const char* option = "GDAL_DEFAULT_WMS_CACHE_PATH";
-    if (CPLGetConfigOption(option, nullptr)) return;
-    const char* const cache = std::getenv("XDG_CACHE_HOME");
-    const char* const home = std::getenv("HOME");
-    std::filesystem::path folder;
-    if (cache && std::filesystem::path(cache).is_absolute())
-        folder = cache;
-    else if (home && *home)
-        folder = std::filesystem::path(home) / ".cache";
-    else
-        return;
-    CPLSetConfigOption(option, (folder / "osgGeoFX" / "services").string().c_str());
-}
-
-/// The first failure on this thread, for GDAL's warper tells of it in no other way. A tile that a service does not have, at the border of its layer, is none, though
-/// GDAL says that its copy in the cache, a name of 32 digits, is not there. A place that PROJ cannot transform has no pixel, and takes none from the others.
-class WarpErrors
-{
-public:
-    WarpErrors() { CPLPushErrorHandlerEx(&handle, this); }
-    ~WarpErrors() { CPLPopErrorHandler(); }
-    WarpErrors(const WarpErrors&) = delete;
-    WarpErrors& operator=(const WarpErrors&) = delete;
-
-    std::string message;
-
-private:
-    bool _missing = false; ///< that was the last failure
-
-    static bool isMissingTile(const std::string& text)
-    {
-        const std::string end = ": No such file or directory";
-        constexpr std::size_t digits = 32;
-        if (text.size() < end.size() + digits + 1) return false;
-        const std::size_t name = text.size() - end.size() - digits;
-        return text.compare(name + digits, end.size(), end) == 0 && text[name - 1] == '/' &&
-               text.find_first_not_of("0123456789abcdef", name) == name + digits;
-    }
-    static void CPL_STDCALL handle(CPLErr severity, CPLErrorNum, const char* text)
-    {
-        auto* const errors = static_cast<WarpErrors*>(CPLGetErrorHandlerUserData());
-        if (severity < CE_Failure || !errors->message.empty()) return;
-        // Of places that have none, such as the outer half of a cell that is centred on a pole.
-        if (std::string(text).rfind("PROJ: ", 0) == 0) return;
-        const bool wasMissing = std::exchange(errors->_missing, isMissingTile(text));
-        // GDAL says this of the same tile next.
-        const bool isSame = wasMissing && std::string(text) == "GDALWMS: Unable to open downloaded block.";
-        if (!errors->_missing && !isSame) errors->message = text;
-    }
-};
-
-} // namespace
-
 FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed,
                          Formats formats, int overview)
     : _file(std::move(file))
@@ -208,18 +151,13 @@ FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted
     }
     else
     {
-        chooseTileCache();
         CPLStringList options;
         if (overview >= 0) options.SetNameValue("OVERVIEW_LEVEL", std::to_string(overview).c_str());
-        _chain.add(DatasetPtr(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
-                                                nullptr, options.List())));
+        _chain = RasterFile::open(_file, options.List());
     }
     if (_chain.empty() && formats == PLAIN_PICTURES)
         fail("it is not there, or no PNG, JPEG, GIF, TIFF, BMP, WebP or JPEG 2000 (" + errors.message() +
              "); correct its name, or convert it to PNG");
-    if (_chain.empty())
-        fail("it is not a raster that GDAL can read (" + errors.message() +
-             "); check it with gdalinfo, or convert it to GeoTIFF");
     // A TIFF has metadata in itself.
     if (formats == PLAIN_PICTURES && top().GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS"))
         fail("it names another file as its overviews; convert it to PNG");
@@ -235,10 +173,8 @@ FrameRaster::FrameRaster(std::string file, DatasetChain chain, std::optional<Dat
 void FrameRaster::prepare(std::optional<DataLayer::Kind> wanted, bool placed)
 {
     const GdalErrorScope errors;
-    if (top().GetRasterCount() == 0)
-        fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
+    if (top().GetRasterCount() == 0) fail("it holds no raster band; check it with gdalinfo");
     checkSize();
-    if (placed) assumeDegrees();
     if (placed) checkPlace();
     if (GDALDataTypeIsComplex(band().GetRasterDataType()))
         fail("its values are complex numbers; export a real band with gdal_translate -ot Float32");
@@ -250,28 +186,11 @@ void FrameRaster::prepare(std::optional<DataLayer::Kind> wanted, bool placed)
         makeValues();
 }
 
-void FrameRaster::assumeDegrees()
-{
-    const OGRSpatialReference* srs = top().GetSpatialRef();
-    if ((srs && !srs->IsEmpty()) || top().GetGCPCount() > 0) return;
-    const auto hasAxis = [this](const std::string& unit)
-    {
-        char** items = top().GetMetadata();
-        for (; items && *items; ++items)
-        {
-            const std::string item = *items, end = "#units=" + unit;
-            if (item.size() > end.size() && item.compare(item.size() - end.size(), end.size(), end) == 0)
-                return true;
-        }
-        return false;
-    };
-    if (hasAxis("degrees_east") && hasAxis("degrees_north")) translate({"-a_srs", "EPSG:4326"});
-}
-
 void FrameRaster::checkPlace() const
 {
     Transform transform{};
     const bool placed = top().GetGeoTransform(transform.data()) == CE_None;
+    if (!placed && RasterFile::hasPlaces(top())) return;
     if (!placed && top().GetGCPCount() == 0)
         fail("it has no georeference; give it one with gdal_translate -a_ullr WEST NORTH EAST SOUTH");
     const OGRSpatialReference* srs = placed ? top().GetSpatialRef() : top().GetGCPSpatialRef();
@@ -444,22 +363,54 @@ DatasetPtr FrameRaster::warped(const FrameCrs& crs, const osg::Vec2d& low, const
         arguments.emplace_back("-dstalpha");
     else
         arguments.insert(arguments.end(), {"-ot", "Float64", "-dstnodata", "nan"});
-    const osg::Vec2d all = size();
-    if (all.x() * all.y() > mostRead)
-    {
-        const Extent extent = this->extent(crs);
-        const osg::Vec2d whole = extent.high - extent.low;
-        checkPixels(all.x() * std::min(1.0, (high.x() - low.x()) / whole.x()) * all.y() *
-                    std::min(1.0, (high.y() - low.y()) / whole.y()));
-    }
+    if (size().x() * size().y() > mostRead) checkPixels(pixelsBelow(crs, low, high, width, height));
     const ReadingFile reading(_file);
-    const WarpErrors errors;
-    GDALWarpAppOptions* options = GDALWarpAppOptionsNew(listOf(arguments).List(), nullptr);
-    GDALDatasetH source = GDALDataset::ToHandle(&top());
-    DatasetPtr result(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options, nullptr)));
-    GDALWarpAppOptionsFree(options);
-    if (!result || !errors.message.empty()) failToRead(errors.message);
-    return result;
+    constexpr int tries = 3;
+    for (int i = 1;; ++i)
+    {
+        const ReadingErrors errors;
+        GDALWarpAppOptions* options = GDALWarpAppOptionsNew(listOf(arguments).List(), nullptr);
+        GDALDatasetH source = GDALDataset::ToHandle(&top());
+        DatasetPtr result(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options, nullptr)));
+        GDALWarpAppOptionsFree(options);
+        if (result && errors.message.empty()) return result;
+        if (i == tries || !mayPass(errors.message)) failToRead(errors.message);
+        std::this_thread::sleep_for(i * std::chrono::milliseconds(500));
+    }
+}
+
+double FrameRaster::pixelsBelow(const FrameCrs& crs, const osg::Vec2d& low, const osg::Vec2d& high, int width,
+                                int height) const
+{
+    GdalErrorScope errors;
+    const Transformer transformer = transformerTo(crs, errors);
+    const osg::Vec2d texel((high.x() - low.x()) / width, (high.y() - low.y()) / height);
+    const auto pixelAt = [&](osg::Vec2d place) -> std::optional<osg::Vec2d>
+    {
+        double z = 0.0;
+        int success = FALSE;
+        GDALGenImgProjTransform(transformer.get(), TRUE, 1, &place.x(), &place.y(), &z, &success);
+        if (!success || !std::isfinite(place.x()) || !std::isfinite(place.y())) return std::nullopt;
+        return place;
+    };
+    constexpr int side = 8;
+    std::vector<double> densities; // of pixels below a texel
+    for (int i = 0; i < side * side; ++i)
+    {
+        const osg::Vec2d place(low.x() + (i % side + 0.5) / side * (high.x() - low.x()),
+                               low.y() + (i / side + 0.5) / side * (high.y() - low.y()));
+        const auto at = pixelAt(place), right = pixelAt(place + osg::Vec2d(texel.x(), 0.0)),
+                   above = pixelAt(place + osg::Vec2d(0.0, texel.y()));
+        if (!at || !right || !above) continue;
+        if (at->x() < 0.0 || at->y() < 0.0 || at->x() > size().x() || at->y() > size().y()) continue;
+        const osg::Vec2d u = *right - *at, v = *above - *at;
+        densities.push_back(std::abs(u.x() * v.y() - u.y() * v.x()));
+    }
+    if (densities.empty()) return 0.0;
+    // At the antimeridian, two neighbors may be the raster's two ends.
+    const auto middle = densities.begin() + static_cast<std::ptrdiff_t>(densities.size() / 2);
+    std::nth_element(densities.begin(), middle, densities.end());
+    return *middle * width * height * static_cast<double>(densities.size()) / (side * side);
 }
 
 void FrameRaster::readValues(GDALDataset& warped, int row, std::vector<double>& values) const
@@ -598,7 +549,8 @@ void FrameRaster::failToRead(const GdalErrorScope& errors) const
 
 void FrameRaster::failToRead(const std::string& message) const
 {
-    fail("its pixels cannot be read (" + message + "); the file may be cut short: copy or export it again");
+    fail("its pixels cannot be read" +
+         causeAndRemedy(message, "the file may be cut short: copy or export it again"));
 }
 
 void FrameRaster::TransformerDestroyer::operator()(void* transformer) const

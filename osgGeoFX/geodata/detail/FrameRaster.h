@@ -136,9 +136,10 @@ private:
     [[noreturn]] void failToRead(const GdalErrorScope& errors) const;
     [[noreturn]] void failToRead(const std::string& message) const;
     void prepare(std::optional<DataLayer::Kind> wanted, bool placed);
-    /// Files after the CF conventions that have degrees along their axes need not name a datum. It is taken to be WGS 84.
-    void assumeDegrees();
     void checkPlace() const;
+    /// About how many of the raster's pixels a rectangle in the CRS's unit, of so many texels, is made of.
+    double pixelsBelow(const FrameCrs& crs, const osg::Vec2d& low, const osg::Vec2d& high, int width,
+                       int height) const;
     /// Fails where so many of the file's pixels, of the overview that is taken, would have to be read that it takes too long.
     void checkPixels(double pixels) const;
     [[noreturn]] void failForOverviews() const;

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/detail/DataGuard.h>
+#include <osgGeoFX/geodata/detail/ReadingErrors.h>
 #include <osgGeoFX/paging/FilesByOthers.h>
 #include <osgGeoFX/paging/ReadingFile.h>
 
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -41,10 +43,52 @@ void DatasetChain::clear()
         _datasets.pop_back();
 }
 
+namespace
+{
+
+void setUnlessSet(const char* option, const std::string& value)
+{
+    if (!CPLGetConfigOption(option, nullptr)) CPLSetConfigOption(option, value.c_str());
+}
+
+/// GDAL puts the tiles of WMTS and XYZ services into the folder that a program happens to run in, unless it is told another one.
+void chooseTileCache()
+{
+    const char* const cache = std::getenv("XDG_CACHE_HOME");
+    const char* const home = std::getenv("HOME");
+    std::filesystem::path folder;
+    if (cache && std::filesystem::path(cache).is_absolute())
+        folder = cache;
+    else if (home && *home)
+        folder = std::filesystem::path(home) / ".cache";
+    else
+        return;
+    setUnlessSet("GDAL_DEFAULT_WMS_CACHE_PATH", (folder / "osgGeoFX" / "services").string());
+}
+
+/// As RemoteFiles: 10 seconds for a connection, and 30 without a byte. GDAL would wait for five minutes.
+void limitWaits()
+{
+    setUnlessSet("GDAL_HTTP_CONNECTTIMEOUT", "10");
+    setUnlessSet("GDAL_HTTP_LOW_SPEED_TIME", "30");
+    setUnlessSet("GDAL_HTTP_LOW_SPEED_LIMIT", "1");
+    // Of files by /vsicurl/, and of documents.
+    setUnlessSet("GDAL_HTTP_MAX_RETRY", "2");
+    setUnlessSet("GDAL_HTTP_RETRY_DELAY", "0.5");
+}
+
+} // namespace
+
 void initialiseGdal()
 {
     static std::once_flag once;
-    std::call_once(once, [] { GDALAllRegister(); });
+    std::call_once(once,
+                   []
+                   {
+                       GDALAllRegister();
+                       chooseTileCache();
+                       limitWaits();
+                   });
     if (FilesByOthers::Scope::folder()) guardGdal();
 }
 
@@ -228,8 +272,9 @@ DatasetPtr openVectors(const std::string& file)
     if (dataset && format == "CSV") placeCsv(*dataset, file);
     if (dataset && format == "GPX") checkCommas(file);
     if (!dataset)
-        throw BuildError(file + ": it is not vector data that GDAL can read (" + errors.message() +
-                         "); check it with ogrinfo, or convert it with ogr2ogr.");
+        throw BuildError(
+            file + ": it is not vector data that GDAL can read" +
+            causeAndRemedy(errors.message(), "check it with ogrinfo, or convert it with ogr2ogr") + ".");
     return dataset;
 }
 
@@ -271,8 +316,9 @@ void forEachFeature(
         take(*feature, *geometry, *toTarget);
     }
     if (errors.failed())
-        throw BuildError(file + ": its features cannot be read (" + errors.message() +
-                         "); the file may be cut short: copy or export it again.");
+        throw BuildError(
+            file + ": its features cannot be read" +
+            causeAndRemedy(errors.message(), "the file may be cut short: copy or export it again") + ".");
 }
 
 } // namespace osgGeoFX

@@ -4,7 +4,9 @@
 
 #include <osgGeoFX/geodata/detail/LatticeTransformer.h>
 #include <osgGeoFX/geodata/detail/Lengths.h>
+#include <osgGeoFX/geodata/detail/RasterFile.h>
 #include <osgGeoFX/geodata/detail/RasterMask.h>
+#include <osgGeoFX/geodata/detail/ReadingErrors.h>
 #include <osgGeoFX/geodata/detail/VirtualRaster.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
@@ -79,19 +81,14 @@ struct RasterSource::WarpRequest
 RasterSource::RasterSource(const std::string& file, RasterKind kind) : _file(file)
 {
     initialiseGdal();
+    const std::string path = RasterFile::parse(file).first;
     VSIStatBufL status;
-    if (VSIStatL(file.c_str(), &status) != 0) fail("there is no such file; check the path");
-    if (VSI_ISREG(status.st_mode) && status.st_size == 0) fail("the file is empty; fetch or export it again");
-
-    {
-        const ReadingFile reading(file);
-        GdalErrorScope errors;
-        if (!_chain.add(DatasetPtr(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR))))
-            fail("it is not a raster that GDAL can read (" + errors.message() +
-                 "); check it with gdalinfo, or convert it to GeoTIFF");
-    }
-    if (_chain.top().GetRasterCount() == 0)
-        fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
+    const bool isThere = VSIStatL(path.c_str(), &status) == 0;
+    // Other names with a colon are GDAL's own.
+    if (!isThere && path.find(':') == std::string::npos) fail("there is no such file; check the path");
+    if (isThere && VSI_ISREG(status.st_mode) && status.st_size == 0)
+        fail("the file is empty; fetch or export it again");
+    _chain = RasterFile::open(file);
     const std::string fault = faultOfBlocks(_chain.top());
     if (!fault.empty()) fail(fault);
     openAs(kind);
@@ -119,9 +116,14 @@ void RasterSource::openAs(RasterKind kind)
 {
     const GdalErrorScope quiet;
     const bool placed = _chain.top().GetGeoTransform(_geoTransform.data()) == CE_None;
-    if (!placed && _chain.top().GetGCPCount() == 0)
+    const bool hasPlaces = !placed && RasterFile::hasPlaces(_chain.top());
+    if (!placed && !hasPlaces && _chain.top().GetGCPCount() == 0)
         fail("it has no georeference; give it one with gdal_translate -a_ullr WEST NORTH EAST SOUTH");
-    const OGRSpatialReference* srs = placed ? _chain.top().GetSpatialRef() : _chain.top().GetGCPSpatialRef();
+    OGRSpatialReference ofPlaces;
+    if (hasPlaces) ofPlaces.SetFromUserInput(_chain.top().GetMetadataItem("SRS", "GEOLOCATION"));
+    const OGRSpatialReference* srs = placed      ? _chain.top().GetSpatialRef()
+                                     : hasPlaces ? &ofPlaces
+                                                 : _chain.top().GetGCPSpatialRef();
     if (!srs || srs->IsEmpty() || srs->IsLocal())
         fail("it has no coordinate reference system; name it with gdal_translate -a_srs EPSG:N");
     _srs = gisOrder(*srs);
@@ -166,11 +168,11 @@ void RasterSource::openAs(RasterKind kind)
     else if (type != GDT_Byte)
         fail("land-cover classes must be one byte for each pixel (it has " +
              std::string(GDALGetDataTypeName(type)) + "); convert it with gdal_translate -ot Byte");
-    if (!placed) warpByControlPoints(kind);
+    if (!placed) warpByPlaces(kind);
     _srs.StripVertical();
 }
 
-void RasterSource::warpByControlPoints(RasterKind kind)
+void RasterSource::warpByPlaces(RasterKind kind)
 {
     CPLStringList list;
     std::vector<const char*> arguments{"-of", "VRT", "-r",
@@ -192,7 +194,7 @@ void RasterSource::warpByControlPoints(RasterKind kind)
     GDALDatasetH result = GDALWarp("", nullptr, 1, &source, options, nullptr);
     GDALWarpAppOptionsFree(options);
     if (!result)
-        fail("its ground control points fit no plane (" + errors.message() +
+        fail("its control points or places cannot be used (" + errors.message() +
              "); warp it with gdalwarp first");
     _chain.add(DatasetPtr(GDALDataset::FromHandle(result)));
     _chain.top().GetGeoTransform(_geoTransform.data());
@@ -321,7 +323,7 @@ void RasterSource::warp(const GridCrs& crs, const Lattice& lattice, const WarpRe
 {
     GDALDataset& source = _chain.top();
     const ReadingFile reading(_file);
-    GdalErrorScope errors;
+    const ReadingErrors errors;
 
     DatasetPtr target(GetGDALDriverManager()->GetDriverByName("MEM")->Create(
         "", lattice.columns, lattice.rows, 0, request.type, nullptr));
@@ -387,8 +389,8 @@ void RasterSource::warp(const GridCrs& crs, const Lattice& lattice, const WarpRe
     GDALWarpOperation operation;
     if (operation.Initialize(options.get()) != CE_None ||
         operation.ChunkAndWarpImage(0, 0, lattice.columns, lattice.rows) != CE_None)
-        fail("its pixels cannot be read (" + errors.message() +
-             "); the file may be cut short: copy or export it again");
+        fail("its pixels cannot be read" +
+             causeAndRemedy(errors.message, "the file may be cut short: copy or export it again"));
 }
 
 void RasterSource::sampleHeights(const GridCrs& crs, const Lattice& lattice, float* out)

@@ -88,7 +88,8 @@ private:
     void takePoles(const GridCrs& crs, Footprint& result) const;
     struct WarpRequest;
     void openAs(RasterKind kind);
-    void warpByControlPoints(RasterKind kind);
+    /// By ground control points, or by arrays of places.
+    void warpByPlaces(RasterKind kind);
     void translate(const std::vector<std::string>& arguments);
     void warp(const GridCrs& crs, const Lattice& lattice, const WarpRequest& request);
     [[noreturn]] void fail(const std::string& what) const;

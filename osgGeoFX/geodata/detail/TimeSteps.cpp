@@ -4,6 +4,8 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/detail/Lengths.h>
+#include <osgGeoFX/geodata/detail/RasterFile.h>
+#include <osgGeoFX/geodata/detail/ReadingErrors.h>
 #include <osgGeoFX/geodata/detail/Remarks.h>
 #include <osgGeoFX/geodata/detail/StepDates.h>
 #include <osgGeoFX/geodata/detail/VirtualRaster.h>
@@ -41,8 +43,8 @@ DatasetPtr openRaster(const std::string& file)
     const GdalErrorScope errors;
     DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
     if (!dataset)
-        throw BuildError(file + ": it is not a raster that GDAL can read (" + errors.message() +
-                         "); check it with gdalinfo.");
+        throw BuildError(file + ": it is not a raster that GDAL can read" +
+                         causeAndRemedy(errors.message(), "check it with gdalinfo") + ".");
     return dataset;
 }
 
@@ -92,8 +94,9 @@ void setTimes(TimeSteps& steps, const std::vector<std::optional<double>>& times,
 class DimensionSteps final : public TimeSteps
 {
 public:
-    DimensionSteps(std::string file, DatasetPtr dataset, const std::string& wanted)
-        : _file(std::move(file)), _dataset(std::move(dataset))
+    /// `timed`: whether it needs a time.
+    DimensionSteps(std::string file, DatasetPtr dataset, const std::string& wanted, bool timed = true)
+        : _file(std::move(file)), _dataset(std::move(dataset)), _timed(timed)
     {
         const std::shared_ptr<GDALGroup> root = _dataset->GetRootGroup();
         if (!root) throw BuildError(_file + ": it holds no variables; check it with gdalmdiminfo.");
@@ -101,23 +104,33 @@ public:
         _array = find(*root, name);
         if (!_array)
         {
-            const std::string names = listed(*root);
-            throw BuildError(
-                _file + ": " +
-                (name.empty() ? std::string("no variable of it has a time, rows and columns")
-                              : "it has no variable \"" + name + "\" with a time, rows and columns") +
-                (names.empty() ? "; look at it with gdalmdiminfo, and show what does not change with "
-                                 "--mapping."
-                               : "; it has " + names + "."));
+            const std::string names = listed(*root, _timed);
+            const std::string parts = _timed ? "a time, rows and columns" : "rows and columns";
+            throw BuildError(_file + ": " +
+                             (name.empty() ? "no variable of it has " + parts
+                                           : "it has no variable \"" + name + "\" with " + parts) +
+                             (names.empty()
+                                  ? "; look at it with gdalmdiminfo, and show what does not change with "
+                                    "--mapping."
+                                  : "; it has " + names + "."));
         }
         variable = _array->GetName();
         unit = _array->GetUnit();
         chooseOthers(wanted.substr(std::min(name.size(), wanted.size())));
-        readTimes();
-        checkTimes(*this, _file);
+        if (_timed)
+        {
+            readTimes();
+            checkTimes(*this, _file);
+        }
     }
 
     std::unique_ptr<FrameRaster> step(std::size_t index) override
+    {
+        return std::make_unique<FrameRaster>(_file, rasterOf(index), DataLayer::VALUE);
+    }
+
+    /// The raster of a step; of a variable without a time, the one that there is.
+    DatasetChain rasterOf(std::size_t index) const
     {
         const GdalErrorScope errors;
         std::string view = "[";
@@ -142,22 +155,45 @@ public:
                              " cannot be used (" + errors.message() + "); check it with gdalmdiminfo.");
         double place[6];
         if (chain.file().GetGeoTransform(place) != CE_None && !_array->GetCoordinateVariables().empty())
-            throw BuildError(
-                _file + ": the places of its variable " + variable +
-                " lie in variables of their own, as of a curved grid; bring each step to an even grid with "
-                "gdalwarp -geoloc, and name the folder of these.");
+            return curved(index);
         const OGRSpatialReference* srs = chain.file().GetSpatialRef();
         const std::string degrees = lower(dimensions[_axes.x]->GetIndexingVariable()
                                               ? dimensions[_axes.x]->GetIndexingVariable()->GetUnit()
                                               : std::string());
         // The CF conventions' usual latitude and longitude.
         if ((!srs || srs->IsEmpty()) && degrees.compare(0, 6, "degree") == 0)
+        {
+            if (!_timed) RasterFile::remarkDegrees(_file);
             addVirtual(chain, {"-a_srs", "EPSG:4326"}, _file);
+        }
         bringToUnit(chain, dimensions);
-        return std::make_unique<FrameRaster>(_file, std::move(chain), DataLayer::VALUE);
+        return chain;
     }
 
 private:
+    /// A step of a variable whose places are in variables of their own. GDAL's reader of rasters, which is another one, knows these.
+    DatasetChain curved(std::size_t index) const
+    {
+        const GdalErrorScope errors;
+        const auto& dimensions = _array->GetDimensions();
+        std::size_t band = 0;
+        for (std::size_t i = 0; i < dimensions.size(); ++i)
+            if (i != _axes.x && i != _axes.y)
+                band = band * static_cast<std::size_t>(dimensions[i]->GetSize()) +
+                       (i == _axes.time ? index : _others[i]);
+        DatasetChain chain;
+        chain.add(
+            DatasetPtr(GDALDataset::Open(("NETCDF:\"" + _file + "\":" + variable).c_str(), GDAL_OF_RASTER)));
+        if (chain.empty() || !RasterFile::hasPlaces(chain.top()) ||
+            band >= static_cast<std::size_t>(chain.top().GetRasterCount()))
+            throw BuildError(_file + ": the places of its variable " + variable +
+                             " lie in variables of their own, as of a curved grid, that GDAL cannot read; "
+                             "bring it to an even grid with "
+                             "gdalwarp -geoloc, and name the result.");
+        addVirtual(chain, {"-b", std::to_string(band + 1)}, _file);
+        return chain;
+    }
+
     /// Axes may be in another unit than the coordinate system, such as kilometres.
     void bringToUnit(DatasetChain& chain, const std::vector<std::shared_ptr<GDALDimension>>& dimensions) const
     {
@@ -268,7 +304,8 @@ private:
                 remarkOnce(_file + ": of its variable " + variable + ", the first value of " +
                            dimensions[i]->GetName() + ", " + valuesOf(i, 1) + ", is shown of " +
                            std::to_string(dimensions[i]->GetSize()) + "; name another one as " + _file + ":" +
-                           variable + "[" + dimensions[i]->GetName() + "=" + valuesOf(i, 1) + "].");
+                           variable + "[" + dimensions[i]->GetName() + "=" + valuesOf(i, 1) + "]" +
+                           (isTime(*dimensions[i]) ? ", or show all of them with --sequence." : "."));
     }
 
     /// The names of the dimensions that can be chosen of.
@@ -325,9 +362,11 @@ private:
                          " has no value " + wanted + "; it has " + valuesOf(dimension, 12) + ".");
     }
 
+    static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+    /// Of the dimensions; one may be none.
     struct Axes
     {
-        std::size_t time = 0, x = 0, y = 0;
+        std::size_t time = none, x = none, y = none;
     };
 
     static bool isTime(const GDALDimension& dimension)
@@ -336,15 +375,16 @@ private:
         return dimension.GetType() == GDAL_DIM_TYPE_TEMPORAL || name == "time" || name == "valid_time";
     }
 
-    /// Whether a variable has a time, and an x and a y beside it.
-    static bool fits(const GDALMDArray& array, Axes& axes)
+    /// Whether a variable has an x and a y, and, if it needs one, a time beside them.
+    static bool fits(const GDALMDArray& array, Axes& axes, bool timed)
     {
         const auto& dimensions = array.GetDimensions();
-        if (dimensions.size() < 3 || array.GetDataType().GetClass() != GEDTC_NUMERIC) return false;
+        if (dimensions.size() < (timed ? 3 : 2) || array.GetDataType().GetClass() != GEDTC_NUMERIC)
+            return false;
         const auto time = std::find_if(dimensions.begin(), dimensions.end(),
                                        [](const auto& each) { return isTime(*each); });
-        if (time == dimensions.end()) return false;
-        axes.time = static_cast<std::size_t>(time - dimensions.begin());
+        if (timed && time == dimensions.end()) return false;
+        axes.time = timed ? static_cast<std::size_t>(time - dimensions.begin()) : none;
         // As a rule the last two, and y before x.
         axes.y = dimensions.size() - 2;
         axes.x = dimensions.size() - 1;
@@ -362,7 +402,7 @@ private:
         for (const std::string& name : group.GetMDArrayNames())
         {
             std::shared_ptr<GDALMDArray> array = group.OpenMDArray(name);
-            if (array && (wanted.empty() || name == wanted) && fits(*array, _axes)) return array;
+            if (array && (wanted.empty() || name == wanted) && fits(*array, _axes, _timed)) return array;
         }
         for (const std::string& name : group.GetGroupNames())
         {
@@ -373,14 +413,14 @@ private:
         return nullptr;
     }
 
-    static std::string listed(const GDALGroup& root)
+    static std::string listed(const GDALGroup& root, bool timed)
     {
         std::string names;
         Axes axes;
         for (const std::string& name : root.GetMDArrayNames())
         {
             const std::shared_ptr<GDALMDArray> array = root.OpenMDArray(name);
-            if (array && fits(*array, axes)) names += (names.empty() ? "" : ", ") + name;
+            if (array && fits(*array, axes, timed)) names += (names.empty() ? "" : ", ") + name;
         }
         return names;
     }
@@ -432,6 +472,7 @@ private:
 
     std::string _file;
     DatasetPtr _dataset;
+    bool _timed;
     std::shared_ptr<GDALMDArray> _array;
     Axes _axes;
     std::vector<std::size_t>
@@ -549,6 +590,17 @@ private:
 } // namespace
 
 TimeSteps::~TimeSteps() = default;
+
+DatasetChain TimeSteps::first(const std::string& file, const std::string& variable)
+{
+    DatasetPtr dataset;
+    {
+        const GdalErrorScope errors;
+        dataset.reset(GDALDataset::Open(file.c_str(), GDAL_OF_MULTIDIM_RASTER));
+    }
+    if (!dataset) return {};
+    return DimensionSteps(file, std::move(dataset), variable, false).rasterOf(0);
+}
 
 std::unique_ptr<TimeSteps> TimeSteps::open(const std::string& file, const std::string& variable)
 {

@@ -24,6 +24,10 @@ public:
     /// Of a dimension that is not named the first value counts, which a warning states.
     static std::unique_ptr<TimeSteps> open(const std::string& file, const std::string& variable);
 
+    /// The first step of a variable, which needs no time, for readers of single rasters; brackets may choose a time as well. Empty if the
+    /// file is no data set of several dimensions.
+    static DatasetChain first(const std::string& file, const std::string& variable);
+
     virtual std::unique_ptr<FrameRaster> step(std::size_t index) = 0;
 
     std::vector<double> times;

@@ -5,8 +5,10 @@
 #include <osg/Notify>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string>
+#include <utility>
 
 namespace osgGeoFX
 {
@@ -80,8 +82,7 @@ void TileStore::want(const std::vector<MappingPage>& pages)
             {
                 const auto found = _all.find(*page);
                 if (found != _all.end()) found->second.used = _time;
-                if (again ? found != _all.end() && found->second.layer && isStale(found->second)
-                          : found == _all.end())
+                if (again ? found != _all.end() && isDue(found->second) : found == _all.end())
                     _queue.push_back(*page);
             }
         }
@@ -109,7 +110,7 @@ bool TileStore::isDone(const MappingPage& page) const
     const std::lock_guard<std::mutex> lock(_mutex);
     const auto found = _all.find(page);
     if (found == _all.end()) return false;
-    return found->second.failed || (found->second.layer && !isStale(found->second));
+    return found->second.failures > 0 || (found->second.layer && !isStale(found->second));
 }
 
 TileStore::Count TileStore::count() const
@@ -118,9 +119,28 @@ TileStore::Count TileStore::count() const
     Count count;
     count.inMemory = static_cast<int>(
         std::count_if(_all.begin(), _all.end(), [](const auto& each) { return each.second.layer.valid(); }));
-    count.failed = _failed;
+    count.failed = static_cast<int>(
+        std::count_if(_all.begin(), _all.end(), [](const auto& each) { return each.second.failures > 0; }));
     count.read = _read;
     return count;
+}
+
+std::string TileStore::faultOf(const MappingPage& page) const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const auto found = _all.find(page);
+    return found == _all.end() ? std::string() : found->second.fault;
+}
+
+void TileStore::fail(Tile& tile, const std::string& error)
+{
+    constexpr double first = 1.0, longest = 60.0; // seconds
+    const double delay = std::min(longest, first * std::pow(2.0, std::min(tile.failures++, 10)));
+    tile.again =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(delay));
+    tile.fault = error;
+    if (std::exchange(_hasWarned, true)) return;
+    OSG_WARN << "osgGeoFX: PagedRaster: " << error << std::endl;
 }
 
 void TileStore::work()
@@ -133,7 +153,7 @@ void TileStore::work()
         const MappingPage page = _queue.back();
         _queue.pop_back();
         const auto [entry, isNew] = _all.try_emplace(page);
-        if (entry->second.reading || (!isNew && !isStale(entry->second))) continue; // another thread reads it
+        if (entry->second.reading || (!isNew && !isDue(entry->second))) continue; // another thread reads it
         entry->second.used = _time;
         entry->second.reading = true;
         const double coarseness = _coarseness;
@@ -147,13 +167,12 @@ void TileStore::work()
         if (layer)
         {
             tile.layer = layer;
+            tile.failures = 0;
+            tile.fault.clear();
             ++_read;
         }
-        else if (!tile.layer)
-        {
-            tile.failed = true;
-            if (_failed++ == 0) OSG_WARN << "osgGeoFX: PagedRaster: " << error << std::endl;
-        }
+        else
+            fail(tile, error);
         evict();
     }
 }

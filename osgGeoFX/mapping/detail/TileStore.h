@@ -6,12 +6,14 @@
 #include <osgGeoFX/mapping/RasterTiles.h>
 #include <osgGeoFX/mapping/detail/MappingPage.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <mutex>
 #include <set>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -19,7 +21,8 @@ namespace osgGeoFX
 {
 
 /** The tiles of a raster that are in memory. Threads of its own read those that are wanted, in their order; those that were wanted
-    longest ago make room. A tile is the square of a MappingPage. Thread-safe. */
+    longest ago make room. A tile that cannot be read is read again after a second while it is wanted, and then after times that double, up to a
+    minute. A tile is the square of a MappingPage. Thread-safe. */
 class TileStore
 {
 public:
@@ -48,14 +51,18 @@ public:
 
     struct Count
     {
-        int inMemory = 0, failed = 0;
+        int inMemory = 0;
+        int failed = 0; ///< those that could not be read when they were last tried
         std::size_t read = 0;
     };
     Count count() const;
-    /// Whether a tile is in memory as it should be, or cannot be read.
+    /// Why a tile could not be read when it was last tried; empty if it could.
+    std::string faultOf(const MappingPage& page) const;
+    /// Whether a tile is in memory as it should be, or could not be read when it was last tried.
     bool isDone(const MappingPage& page) const;
 
 private:
+    using Clock = std::chrono::steady_clock;
     struct Tile
     {
         osg::ref_ptr<DataLayer> layer; ///< null while it is read for the first time, and if it has failed
@@ -63,10 +70,18 @@ private:
         bool reading = false;
         std::uint64_t used = 0;
         bool kept = false;
-        bool failed = false;
+        int failures = 0;        ///< in a row
+        Clock::time_point again; ///< when it is tried again, if it has failed
+        std::string fault;       ///< of the last try
     };
     osg::ref_ptr<DataLayer> read(const MappingPage& page, double coarseness, std::string& error) const;
     bool isStale(const Tile& tile) const { return tile.coarseness != _coarseness && _remakes; }
+    /// Whether a tile that was read, or could not be, is to be read again now.
+    bool isDue(const Tile& tile) const
+    {
+        return tile.failures > 0 ? Clock::now() >= tile.again : tile.layer && isStale(tile);
+    }
+    void fail(Tile& tile, const std::string& error);
     void work();
     void evict();
 
@@ -82,7 +97,7 @@ private:
     std::uint64_t _time = 0;
     double _coarseness = 1.0;
     std::size_t _read = 0;
-    int _failed = 0;
+    bool _hasWarned = false;
     std::vector<std::thread> _threads;
 };
 

@@ -6,6 +6,7 @@
 #include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 
+#include <osgGeoFX/geodata/detail/RasterFile.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 
 #include <algorithm>
@@ -19,15 +20,17 @@ namespace osgGeoFX
 namespace
 {
 
-/// A file's path, size and time as a line. A file that has changed has another line.
-std::string sourceLine(const char* kind, const std::string& file)
+/// A file's path, size and time as a line. A file that has changed has another line. `name`: may have a variable of the file (RasterFile).
+std::string sourceLine(const char* kind, const std::string& name)
 {
+    const auto [file, variable] = RasterFile::parse(name);
+    const std::string part = variable.empty() ? "" : ":" + variable;
     std::ostringstream text;
     // GDAL's own file systems: archives, and what lies on servers.
     if (file.rfind("/vsi", 0) == 0)
     {
         VSIStatBufL remote{};
-        text << kind << " " << file;
+        text << kind << " " << name;
         if (VSIStatL(file.c_str(), &remote) == 0)
             text << ", " << remote.st_size << " bytes, changed " << remote.st_mtime;
         text << "\n";
@@ -35,7 +38,7 @@ std::string sourceLine(const char* kind, const std::string& file)
     }
     std::error_code code;
     const auto size = std::filesystem::file_size(file, code);
-    text << kind << " " << std::filesystem::absolute(file).lexically_normal().string();
+    text << kind << " " << std::filesystem::absolute(file).lexically_normal().string() << part;
     if (!code)
         text << ", " << size << " bytes, changed "
              << std::filesystem::last_write_time(file, code).time_since_epoch().count();
