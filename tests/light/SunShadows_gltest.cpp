@@ -883,10 +883,12 @@ TEST_F(SunShadowsTest, TakeFourBytesForEachTexelOfACamera)
         EXPECT_EQ(textureBytes() - before, 5 * one) << model;
     }
 
-    // The former ones go when what was drawn with them has gone.
+    // The former ones go when what was drawn with them has gone: when each cull visitor has drawn with the new ones.
+    viewer().setThreadingModel(Threading::DrawThreadPerContext);
     _shadows->setCascades(3);
-    draw();
-    draw();
+    for (int i = 0; i < 6; ++i)
+        viewer().frame();
+    viewer().setThreadingModel(Threading::SingleThreaded);
     draw();
     EXPECT_EQ(textureBytes() - before, 3 * one);
 }

@@ -243,5 +243,8 @@ TEST_F(DeepPrint, FormatsOfEightBitsAreRefused)
     EXPECT_EQ(error.back(), '.');
     EXPECT_FALSE(fs::exists(file("print.jpg")));
     for (const auto& entry : fs::directory_iterator(how.work))
-        EXPECT_EQ(entry.path().filename().string().rfind("tile-", 0), 0u) << entry.path();
+    {
+        const std::string name = entry.path().filename().string();
+        EXPECT_TRUE(name.rfind("tile-", 0) == 0 || name == "osggeofx-work.txt") << name;
+    }
 }
