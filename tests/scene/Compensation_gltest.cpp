@@ -149,8 +149,8 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
 INSTANTIATE_TEST_SUITE_P(
     Oahu, Compensation,
     ::testing::Combine(
-        ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 24, 500},
-                          OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 24, 500},
+        ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 16, 500},
+                          OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 16, 500},
                           OahuCase{"liberties", "oahu", addRandomLiberties, 12, 200},
                           OahuCase{"liberties_projected", "oahu_projected", addRandomLiberties, 12, 200},
                           OahuCase{"panorama", "oahu", addRandomPanorama, 12, 100},

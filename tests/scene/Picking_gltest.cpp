@@ -340,8 +340,8 @@ TEST_P(Picking, WithoutEffectsItIsOsgsOwnIntersector)
 
 INSTANTIATE_TEST_SUITE_P(
     Oahu, Picking,
-    ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 8, 50},
-                      OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 8, 50},
+    ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 5, 50},
+                      OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 5, 50},
                       OahuCase{"panorama", "oahu", addRandomPanorama, 3, 12},
                       OahuCase{"panorama_projected", "oahu_projected", addRandomPanorama, 3, 12}),
     [](const auto& each) { return std::string(each.param.name); });
