@@ -185,7 +185,7 @@ TEST_P(EverythingAtOnce, IsThePictureWithoutCulling)
 {
     // OSG gives buffers of scenes that are gone to new tiles.
     watch().ignore("to update a GL_STATIC_DRAW buffer");
-    const SampleRange cameras(fullTest() ? 300 : 16, std::get<1>(GetParam()), PARTS);
+    const SampleRange cameras(fullTest() ? 300 : 8, std::get<1>(GetParam()), PARTS);
     std::unique_ptr<CullHarness> harness;
     int loaded = 0;
     int lifted = 0;
