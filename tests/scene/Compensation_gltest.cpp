@@ -129,7 +129,7 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
         }
         if (deserving > 0.0) requestRatios.push_back(asking / deserving);
     }
-    EXPECT_GT(loaded, count);
+    EXPECT_GE(loaded, count);
     EXPECT_GT(deformed, count / 2);
     EXPECT_GT(culledAway, static_cast<std::size_t>(10 * count));
     const double tileRatio = median(tileRatios);
@@ -155,8 +155,8 @@ INSTANTIATE_TEST_SUITE_P(
                           OahuCase{"liberties_projected", "oahu_projected", addRandomLiberties, 12, 200},
                           OahuCase{"panorama", "oahu", addRandomPanorama, 12, 100},
                           OahuCase{"panorama_projected", "oahu_projected", addRandomPanorama, 12, 100},
-                          OahuCase{"painting", "oahu", addRandomPainting, 8, 40},
-                          OahuCase{"painting_projected", "oahu_projected", addRandomPainting, 8, 40}),
+                          OahuCase{"painting", "oahu", addRandomPainting, 4, 40},
+                          OahuCase{"painting_projected", "oahu_projected", addRandomPainting, 4, 40}),
         ::testing::Range(0, PARTS)),
     [](const auto& each)
     { return std::string(std::get<0>(each.param).name) + "_" + std::to_string(std::get<1>(each.param)); });

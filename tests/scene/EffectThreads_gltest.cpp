@@ -18,6 +18,7 @@
 #include <osgViewer/CompositeViewer>
 
 #include <chrono>
+#include <vector>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -317,7 +318,9 @@ TEST_P(EveryModel, DrawsTheSame)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Oahu, EveryModel, ::testing::Values("oahu", "oahu_projected"),
+INSTANTIATE_TEST_SUITE_P(Oahu, EveryModel,
+                         ::testing::ValuesIn(fullTest() ? std::vector<const char*>{"oahu", "oahu_projected"}
+                                                        : std::vector<const char*>{"oahu"}),
                          [](const auto& each) { return std::string(each.param); });
 
 TEST_F(EffectThreads, ViewsShareATerrainEachWithItsEffects)

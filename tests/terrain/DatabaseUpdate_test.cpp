@@ -20,6 +20,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <vector>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -193,7 +194,9 @@ protected:
     int _fresh = 0;
 };
 
-INSTANTIATE_TEST_SUITE_P(Grids, DatabaseUpdate, ::testing::Bool(),
+INSTANTIATE_TEST_SUITE_P(Grids, DatabaseUpdate,
+                         ::testing::ValuesIn(fullTest() ? std::vector<bool>{false, true}
+                                                        : std::vector<bool>{false}),
                          [](const auto& parameter) { return parameter.param ? "OnAPlane" : "OnAGlobe"; });
 
 TEST_P(DatabaseUpdate, ElevationIsAddedAndTakenAway)
