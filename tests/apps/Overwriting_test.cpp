@@ -497,12 +497,13 @@ TEST_F(Overwriting, OtherPrograms)
     expectOptions("osggeofx_palette", {"--output"}, {"painting", "--light", "--classes", "--points"},
                   {"-o", "--hillshade", "--around", "--ready"});
 
-    write("plan/work/plan.json", R"({"format": "", "version": 1, "estimate": {"seconds": 1}, "stages": []})");
+    const std::string plan = (fs::path("plan") / "work" / "plan.json").string();
+    write(plan, R"({"format": "", "version": 1, "estimate": {"seconds": 1}, "stages": []})");
     write("times.json", "{}");
-    expectRefusals("osggeofx_cluster",
-                   {{"plan/work/plan.json", {"predict", "plan"}},
-                    {"times.json", {"predict", "plan", "--times", "times.json"}}},
-                   {{"--save", {}, to("--save")}}, 2, 3);
+    expectRefusals(
+        "osggeofx_cluster",
+        {{plan, {"predict", "plan"}}, {"times.json", {"predict", "plan", "--times", "times.json"}}},
+        {{"--save", {}, to("--save")}}, 2, 3);
     expectOptions("osggeofx_cluster", {"--save"}, {"DIR", "--times"},
                   {"--units-per-job", "--until", "--cores", "--workers"}, {"predict"});
 
