@@ -581,8 +581,7 @@ void FrameRaster::failToUse(const GdalErrorScope& errors) const
 
 void FrameRaster::translate(const Arguments& arguments)
 {
-    const GdalErrorScope errors;
-    if (!addVirtualRaster(_chain, arguments)) failToUse(errors);
+    addVirtualRaster(_chain, arguments, _file);
 }
 
 /// Red, green, blue and alpha, bytes.

@@ -63,19 +63,12 @@ DatasetPtr opened(const std::string& name, const char* const* options)
         GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, nullptr, options));
 }
 
-[[noreturn]] void failToOpen(const std::string& name, const std::string& message)
-{
-    throw BuildError(name + ": it is not a raster that GDAL can read" +
-                     causeAndRemedy(message, "check it with gdalinfo, or convert it to GeoTIFF") + ".");
-}
-
 /// A part of a file with subdatasets.
 DatasetChain openPart(const std::string& file, const std::string& variable, const char* const* options)
 {
+    const DatasetPtr whole = RasterFile::openPlain(file);
     const GdalErrorScope errors;
     DatasetChain chain;
-    const DatasetPtr whole = opened(file, nullptr);
-    if (!whole) failToOpen(file, errors.message());
     const std::vector<std::string> parts = partsOf(*whole);
     for (const std::string& part : parts)
         if (variableIn(part) == variable) chain.add(opened(part, options));
@@ -85,14 +78,6 @@ DatasetChain openPart(const std::string& file, const std::string& variable, cons
         throw BuildError(file + ": it has no variables, so \"" + variable +
                          "\" is none of it; name the file alone.");
     return chain;
-}
-
-void addVirtual(DatasetChain& chain, const std::vector<std::string>& arguments, const std::string& name)
-{
-    const GdalErrorScope errors;
-    if (!addVirtualRaster(chain, arguments))
-        throw BuildError(name + ": its bands cannot be used (" + errors.message() +
-                         "); convert it to GeoTIFF with gdal_translate.");
 }
 
 /// The time of a band of netCDF, for people; empty if it has none.
@@ -133,7 +118,7 @@ void takeFirst(DatasetChain& chain, const std::string& name)
                    ", is taken; cut another one out with gdal_translate -b, or show all with --sequence.");
     else
         return;
-    addVirtual(chain, {"-b", "1"}, name);
+    addVirtualRaster(chain, {"-b", "1"}, name);
 }
 
 /// Files after the CF conventions that have degrees along their axes need not name a datum. It is taken to be WGS 84.
@@ -153,7 +138,7 @@ void assumeDegrees(DatasetChain& chain, const std::string& name)
     };
     if (!hasAxis("degrees_east") || !hasAxis("degrees_north")) return;
     RasterFile::remarkDegrees(name);
-    addVirtual(chain, {"-a_srs", "EPSG:4326"}, name);
+    addVirtualRaster(chain, {"-a_srs", "EPSG:4326"}, name);
 }
 
 } // namespace
@@ -180,6 +165,17 @@ std::pair<std::string, std::string> RasterFile::parse(const std::string& name)
     return {file, name.substr(colon + 1)};
 }
 
+DatasetPtr RasterFile::openPlain(const std::string& name, const char* const* options)
+{
+    const GdalErrorScope errors;
+    DatasetPtr dataset = opened(name, options);
+    if (!dataset)
+        throw BuildError(
+            name + ": it is not a raster that GDAL can read" +
+            causeAndRemedy(errors.message(), "check it with gdalinfo, or convert it to GeoTIFF") + ".");
+    return dataset;
+}
+
 DatasetChain RasterFile::open(const std::string& name, const char* const* options)
 {
     initialiseGdal();
@@ -191,10 +187,7 @@ DatasetChain RasterFile::open(const std::string& name, const char* const* option
         chain = TimeSteps::first(file, variable);
         return chain.empty() ? openPart(file, variable, options) : std::move(chain);
     }
-    {
-        const GdalErrorScope errors;
-        if (!chain.add(opened(name, options))) failToOpen(name, errors.message());
-    }
+    chain.add(openPlain(name, options));
     if (chain.top().GetRasterCount() == 0)
     {
         const std::vector<std::string> parts = partsOf(chain.top());

@@ -24,6 +24,9 @@ struct RasterFile
         is no raster. `options`: open options of GDAL; may be null. */
     static DatasetChain open(const std::string& name, const char* const* options = nullptr);
 
+    /// The raster as GDAL has it, with all its bands. `name`: one that GDAL knows. Throws BuildError, naming file and remedy, where it is none.
+    static DatasetPtr openPlain(const std::string& name, const char* const* options = nullptr);
+
     /// Whether GDAL opens a file as a raster, or as several.
     static bool isRaster(const std::string& file);
 

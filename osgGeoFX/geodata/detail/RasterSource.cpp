@@ -108,8 +108,7 @@ void RasterSource::failToUse(const GdalErrorScope& errors) const
 
 void RasterSource::translate(const std::vector<std::string>& arguments)
 {
-    const GdalErrorScope errors;
-    if (!addVirtualRaster(_chain, arguments)) failToUse(errors);
+    addVirtualRaster(_chain, arguments, _file);
 }
 
 void RasterSource::openAs(RasterKind kind)

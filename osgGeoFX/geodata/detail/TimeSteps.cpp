@@ -5,7 +5,6 @@
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/detail/Lengths.h>
 #include <osgGeoFX/geodata/detail/RasterFile.h>
-#include <osgGeoFX/geodata/detail/ReadingErrors.h>
 #include <osgGeoFX/geodata/detail/Remarks.h>
 #include <osgGeoFX/geodata/detail/StepDates.h>
 #include <osgGeoFX/geodata/detail/VirtualRaster.h>
@@ -36,25 +35,6 @@ std::string lower(std::string text)
     std::transform(text.begin(), text.end(), text.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text;
-}
-
-DatasetPtr openRaster(const std::string& file)
-{
-    const GdalErrorScope errors;
-    DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
-    if (!dataset)
-        throw BuildError(file + ": it is not a raster that GDAL can read" +
-                         causeAndRemedy(errors.message(), "check it with gdalinfo") + ".");
-    return dataset;
-}
-
-/// A virtual dataset above the last one.
-void addVirtual(DatasetChain& chain, const std::vector<std::string>& arguments, const std::string& file)
-{
-    const GdalErrorScope errors;
-    if (!addVirtualRaster(chain, arguments))
-        throw BuildError(file + ": a step of it cannot be used (" + errors.message() +
-                         "); check it with gdalinfo.");
 }
 
 /// Times must rise; those that do not are as good as none.
@@ -164,7 +144,7 @@ public:
         if ((!srs || srs->IsEmpty()) && degrees.compare(0, 6, "degree") == 0)
         {
             if (!_timed) RasterFile::remarkDegrees(_file);
-            addVirtual(chain, {"-a_srs", "EPSG:4326"}, _file);
+            addVirtualRaster(chain, {"-a_srs", "EPSG:4326"}, _file);
         }
         bringToUnit(chain, dimensions);
         return chain;
@@ -190,7 +170,7 @@ private:
                              " lie in variables of their own, as of a curved grid, that GDAL cannot read; "
                              "bring it to an even grid with "
                              "gdalwarp -geoloc, and name the result.");
-        addVirtual(chain, {"-b", std::to_string(band + 1)}, _file);
+        addVirtualRaster(chain, {"-b", std::to_string(band + 1)}, _file);
         return chain;
     }
 
@@ -214,10 +194,10 @@ private:
         };
         const double right = place[0] + place[1] * chain.top().GetRasterXSize();
         const double bottom = place[3] + place[5] * chain.top().GetRasterYSize();
-        addVirtual(chain,
-                   {"-a_ullr", number(place[0] * wide), number(place[3] * high), number(right * wide),
-                    number(bottom * high)},
-                   _file);
+        addVirtualRaster(chain,
+                         {"-a_ullr", number(place[0] * wide), number(place[3] * high), number(right * wide),
+                          number(bottom * high)},
+                         _file);
     }
 
     /// Whether attributes say which values are valid, beside the one value that GDAL's bands can have for none.
@@ -485,7 +465,7 @@ class BandSteps final : public TimeSteps
 public:
     explicit BandSteps(std::string file) : _file(std::move(file))
     {
-        const DatasetPtr dataset = openRaster(_file);
+        const DatasetPtr dataset = RasterFile::openPlain(_file);
         std::vector<std::optional<double>> dates;
         const int last = dataset->GetRasterCount();
         _hasAlpha = last > 0 && dataset->GetRasterBand(last)->GetColorInterpretation() == GCI_AlphaBand;
@@ -502,10 +482,10 @@ public:
     std::unique_ptr<FrameRaster> step(std::size_t index) override
     {
         DatasetChain chain;
-        chain.add(openRaster(_file));
+        chain.add(RasterFile::openPlain(_file));
         std::vector<std::string> bands{"-b", std::to_string(index + 1)};
         if (_hasAlpha) bands.insert(bands.end(), {"-b", std::to_string(chain.file().GetRasterCount())});
-        addVirtual(chain, bands, _file);
+        addVirtualRaster(chain, bands, _file);
         return std::make_unique<FrameRaster>(_file, std::move(chain), DataLayer::VALUE);
     }
 

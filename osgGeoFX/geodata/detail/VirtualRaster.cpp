@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/geodata/detail/VirtualRaster.h>
 
+#include <osgGeoFX/geodata/BuildError.h>
+
 #include <cpl_string.h>
 #include <gdal_utils.h>
 
@@ -19,6 +21,14 @@ bool addVirtualRaster(DatasetChain& chain, const std::vector<std::string>& argum
     GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(&chain.top()), options, nullptr);
     GDALTranslateOptionsFree(options);
     return chain.add(DatasetPtr(GDALDataset::FromHandle(result)));
+}
+
+void addVirtualRaster(DatasetChain& chain, const std::vector<std::string>& arguments, const std::string& name)
+{
+    const GdalErrorScope errors;
+    if (!addVirtualRaster(chain, arguments))
+        throw BuildError(name + ": its bands cannot be used (" + errors.message() +
+                         "); convert it to GeoTIFF with gdal_translate.");
 }
 
 } // namespace osgGeoFX

@@ -16,4 +16,8 @@ namespace osgGeoFX
 /// none; GDAL has said why then.
 bool addVirtualRaster(DatasetChain& chain, const std::vector<std::string>& arguments);
 
+/// Does so for a raster with this name. Throws BuildError, naming it and the remedy, where GDAL makes none.
+void addVirtualRaster(DatasetChain& chain, const std::vector<std::string>& arguments,
+                      const std::string& name);
+
 } // namespace osgGeoFX
