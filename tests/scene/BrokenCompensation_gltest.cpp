@@ -132,7 +132,7 @@ protected:
             lying->addChild(oahu->effects->getChild(i));
         CullHarness truth(context(), oahu->effects, WIDTH, HEIGHT);
         CullHarness lies(context(), lying, WIDTH, HEIGHT);
-        for (std::uint64_t i = 0; i < 10; ++i)
+        for (std::uint64_t i = 0; i < (fullTest() ? 10 : 6); ++i)
         {
             Random random(i);
             const osg::Matrixd view = randomOahuView(random, *oahu->reference);
