@@ -184,9 +184,10 @@ private:
                 {
                     for (int x = std::max(column - 1, 0); x <= std::min(column + 1, side - 1); ++x)
                     {
-                        const double fall = (_height[static_cast<std::size_t>(cell)] -
-                                             _height[static_cast<std::size_t>(index(x, y))]) /
-                                            (x != column && y != row ? diagonal : 1.0);
+                        const double drop = _height[static_cast<std::size_t>(cell)] -
+                                            _height[static_cast<std::size_t>(index(x, y))];
+                        if (drop <= steepest) continue;
+                        const double fall = drop / (x != column && y != row ? diagonal : 1.0);
                         if (fall <= steepest) continue;
                         steepest = fall;
                         to[static_cast<std::size_t>(cell)] = index(x, y);
@@ -208,7 +209,9 @@ private:
             const int next = to[cell];
             if (next == number) continue;
             const double away = next % side != number % side && next / side != number / side ? diagonal : 1.0;
-            const double force = 130.0 * power * std::pow(water[cell], share) / away;
+            // Most cells have none but their own.
+            const double flow = water[cell] == 1.0 ? 1.0 : std::pow(water[cell], share);
+            const double force = 130.0 * power * flow / away;
             _height[cell] = (_height[cell] + force * _height[static_cast<std::size_t>(next)]) / (1.0 + force);
             // Nothing stands steeper than scree and rock allow.
             const double most = _height[static_cast<std::size_t>(next)] + 0.02 * away;

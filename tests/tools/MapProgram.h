@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -96,8 +97,15 @@ protected:
         return R"({"type":"FeatureCollection","features":[)" + features + "]}";
     }
 
-    /// The places that pixels of the plain map show, degrees.
+    /// The places that pixels of the plain map show, degrees. The map is the same for all tests, so each place is picked once.
     std::vector<osg::Vec2d> placesOf(const std::vector<std::array<int, 2>>& pixels)
+    {
+        static std::map<std::vector<std::array<int, 2>>, std::vector<osg::Vec2d>> known;
+        const auto [places, isNew] = known.try_emplace(pixels);
+        if (isNew) places->second = picked(pixels);
+        return places->second;
+    }
+    std::vector<osg::Vec2d> picked(const std::vector<std::array<int, 2>>& pixels)
     {
         std::vector<std::string> arguments = {"plain.json", "-o", "pick.png"};
         for (const auto& [x, y] : pixels)
