@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/geodata/detail/DataGuard.h>
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
+#include <osgGeoFX/geodata/detail/TileAddress.h>
 #include <osgGeoFX/paging/FilesByOthers.h>
 
 #include <cpl_minixml.h>
@@ -117,6 +118,11 @@ FileSources FileSources::of(const std::string& file)
     FileSources result;
     // Whoever reads it says so.
     if (!faultOfArchive(file).empty()) return result;
+    if (TileAddress::is(file))
+    {
+        result.service = "WMS";
+        return result;
+    }
     GDALDriverH driver =
         GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR, nullptr, nullptr);
     const std::string format = driver ? GDALGetDriverShortName(driver) : "";

@@ -6,6 +6,7 @@
 #include <osgGeoFX/geodata/detail/ReadingErrors.h>
 #include <osgGeoFX/geodata/detail/Remarks.h>
 #include <osgGeoFX/geodata/detail/StepDates.h>
+#include <osgGeoFX/geodata/detail/TileAddress.h>
 #include <osgGeoFX/geodata/detail/TimeSteps.h>
 #include <osgGeoFX/geodata/detail/VirtualRaster.h>
 #include <osgGeoFX/mapping/LayerClock.h>
@@ -59,8 +60,8 @@ std::string listed(const std::vector<std::string>& parts)
 
 DatasetPtr opened(const std::string& name, const char* const* options)
 {
-    return DatasetPtr(
-        GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, nullptr, options));
+    return DatasetPtr(GDALDataset::Open(TileAddress::forGdal(name).c_str(),
+                                        GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, nullptr, options));
 }
 
 /// A part of a file with subdatasets.
@@ -207,7 +208,7 @@ bool RasterFile::isRaster(const std::string& file)
     initialiseGdal();
     const GdalErrorScope quiet;
     const ReadingFile reading(file);
-    return DatasetPtr(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER)) != nullptr;
+    return TileAddress::is(file) || DatasetPtr(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER)) != nullptr;
 }
 
 bool RasterFile::hasPlaces(GDALDataset& raster)
