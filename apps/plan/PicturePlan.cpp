@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "plan/PicturePlan.h"
 
+#include <osgGeoFX/batch/PathText.h>
 #include <osgGeoFX/batch/WholeFile.h>
 #include <osgGeoFX/batch/WorkError.h>
 
@@ -16,6 +17,7 @@
 #include <stdexcept>
 
 namespace fs = std::filesystem;
+using osgGeoFX::PathText;
 using osgGeoFX::WorkError;
 using osgGeoFX::WorkPlan;
 
@@ -101,25 +103,19 @@ void PicturePlan::write(const std::string& folder) const
         seconds += stage.seconds;
         list.push_back({{"name", stage.name}, {"units", stage.units}, {"seconds", stage.seconds}});
     }
+    std::vector<std::string> words;
+    for (const std::string& argument : arguments)
+        words.push_back(PathText::of(argument));
     const nlohmann::ordered_json document = {{"format", FORMAT},
                                              {"version", VERSION},
                                              {"program", program},
-                                             {"arguments", arguments},
-                                             {"workingFolder", workingFolder},
-                                             {"madeOf", madeOf},
+                                             {"arguments", words},
+                                             {"workingFolder", PathText::of(workingFolder)},
+                                             {"madeOf", PathText::of(madeOf)},
                                              {"estimate", {{"seconds", seconds}}},
                                              {"stages", list}};
     const std::string file = WorkPlan::file(folder);
-    std::string text;
-    try
-    {
-        text = document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-    }
-    catch (const nlohmann::json::exception&)
-    {
-        throw WorkError(file +
-                        ": a name on the command line is not UTF-8; rename the file, or write it in UTF-8.");
-    }
+    const std::string text = document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     std::error_code code;
     fs::create_directories(fs::path(file).parent_path(), code);
     const int error = code ? code.value() : osgGeoFX::writeWholeFile(file, text.data(), text.size());
@@ -153,9 +149,10 @@ std::optional<PicturePlan> PicturePlan::read(const std::string& folder, const st
             throw WorkError(path + ": the plan has version " + std::to_string(version) +
                             ", but this program reads version " + std::to_string(VERSION) +
                             "; use the program that has made it, or plan anew with --plan.");
-        document.at("arguments").get_to(plan.arguments);
-        document.at("workingFolder").get_to(plan.workingFolder);
-        document.at("madeOf").get_to(plan.madeOf);
+        for (const nlohmann::json& word : document.at("arguments"))
+            plan.arguments.push_back(PathText::path(word.get<std::string>()));
+        plan.workingFolder = PathText::path(document.at("workingFolder").get<std::string>());
+        plan.madeOf = PathText::path(document.at("madeOf").get<std::string>());
         return plan;
     }
     catch (const nlohmann::json::exception& error)
