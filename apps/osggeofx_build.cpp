@@ -150,6 +150,11 @@ int main(int argc, char** argv)
            "What becomes of places inside the elevation that have none: fill them from what lies around "
            "them (the default), or keep them as holes")
         ->transform(CLI::CheckedTransformer(voids).description("fill|keep"));
+    app.add_flag(
+        "--all-heights", options.allHeights,
+        "Take all values of the elevation as heights. Without it, those that plainly are none count as "
+        "missing: a single "
+        "value far from all others (-9999), one all around turned data, heights beyond -12000 and 9500 m");
     app.add_option("--void-reach", options.voidReach,
                    "How far from the data voids are filled, samples, 1 to 500; larger ones stay")
         ->capture_default_str();
@@ -281,6 +286,8 @@ int main(int argc, char** argv)
                 static_cast<unsigned long long>(summary.tilesReused), summary.levels,
                 static_cast<double>(summary.samples) * 1e-6, static_cast<double>(summary.bytes) * 1e-6,
                 summary.seconds, static_cast<double>(summary.peakMemoryBytes) / (1024.0 * 1024.0));
+            std::printf("Heights: %.1f to %.1f m; %s.\n", summary.lowestHeight, summary.highestHeight,
+                        summary.heightUnits.c_str());
             tellUpdate(summary, options.output);
             if (options.compressTextures) std::printf("%s", summary.textures.text().c_str());
             if (summary.filledShare > 0.0)

@@ -68,7 +68,7 @@ struct Arguments
     geofx::layers::Options layers;
     geofx::web::Options web;
     geofx::print::Options print;
-    bool explain = false, quiet = false;
+    bool allHeights = false, explain = false, quiet = false;
 };
 
 void addOptions(CLI::App& app, Arguments& arguments)
@@ -130,6 +130,9 @@ void addOptions(CLI::App& app, Arguments& arguments)
     app.add_option("--vertical", arguments.vertical,
                    "What the heights are measured from: none, ellipsoid, egm96")
         ->check(CLI::IsMember({"none", "ellipsoid", "egm96"}));
+    app.add_flag(
+        "--all-heights", arguments.allHeights,
+        "Take all values of a DEM as heights, also those that plainly are none; as osggeofx_build's");
     app.add_option("--set", arguments.settings,
                    "Any property of the map, such as snowLine=2500 or strokes=false; osggeofx_render "
                    "--help-effects lists "
@@ -323,6 +326,7 @@ void takeOptions(const Arguments& arguments, Recipe& recipe)
     take(arguments.landCoverTable, recipe.landCoverTable);
     take(arguments.treeCover, recipe.treeCover);
     take(arguments.vertical, recipe.vertical);
+    if (arguments.allHeights) recipe.allHeights = true;
     take(arguments.names.style, recipe.labelStyle);
     take(arguments.names.field, recipe.labelField);
     take(arguments.names.font, recipe.font);

@@ -94,7 +94,7 @@ GroundBuilder::GroundBuilder(const Recipe& recipe, std::string folder, bool quie
     _spacing = HUGE_VAL;
     for (const std::string& dem : recipe.dems)
     {
-        const ThinnedRaster::Size size = ThinnedRaster::look(dem);
+        const ThinnedRaster::Size size = ThinnedRaster::look(dem, recipe.allHeights);
         _samples += static_cast<double>(size.columns) * size.rows;
         _spacing = std::min(_spacing, size.spacing);
     }
@@ -135,7 +135,7 @@ std::string GroundBuilder::build(const std::string& name, int factor, const std:
     for (std::size_t i = 0; i < _recipe.dems.size(); ++i)
     {
         const std::string& dem = _recipe.dems[i];
-        const ThinnedRaster::Size size = ThinnedRaster::look(dem);
+        const ThinnedRaster::Size size = ThinnedRaster::look(dem, _recipe.allHeights);
         // Coarser ones among several sources are not made coarser than needed.
         const int own = std::max(1, static_cast<int>(factor * _spacing / size.spacing + 0.01));
         const ThinnedRaster::Cut cut = ThinnedRaster::cut(dem, places, own);
@@ -146,20 +146,20 @@ std::string GroundBuilder::build(const std::string& name, int factor, const std:
             continue;
         }
         // The name tells all that the copy depends on, so a copy that is there is the right one.
-        const std::size_t key =
-            std::hash<std::string>()(fs::absolute(dem).string() + ' ' + std::to_string(timeOf(dem)) + ' ' +
-                                     std::to_string(cut.left) + ' ' + std::to_string(cut.top) + ' ' +
-                                     std::to_string(cut.columns) + ' ' + std::to_string(cut.rows));
+        const std::size_t key = std::hash<std::string>()(
+            fs::absolute(dem).string() + ' ' + std::to_string(timeOf(dem)) + ' ' + std::to_string(cut.left) +
+            ' ' + std::to_string(cut.top) + ' ' + std::to_string(cut.columns) + ' ' +
+            std::to_string(cut.rows) + (_recipe.allHeights ? " all" : ""));
         const std::string copy = _folder + "/" + name + "-" + std::to_string(i) + "-" + std::to_string(own) +
                                  "-" + std::to_string(key) + ".tif";
         if (!fs::exists(copy))
         {
             osgGeoFX::ProgressLine line("osggeofx_panorama");
-            ThinnedRaster::write(dem, cut, copy,
-                                 [&](double done) {
-                                     return _quiet || line(static_cast<std::uint64_t>(1000.0 * done), 1000,
-                                                           "reading " + dem);
-                                 });
+            ThinnedRaster::write(
+                dem, cut, copy,
+                [&](double done)
+                { return _quiet || line(static_cast<std::uint64_t>(1000.0 * done), 1000, "reading " + dem); },
+                _recipe.allHeights);
         }
         options.dems.push_back(copy);
     }
@@ -169,6 +169,7 @@ std::string GroundBuilder::build(const std::string& name, int factor, const std:
     options.landCoverTable = _recipe.landCoverTable;
     options.treeCover = _recipe.treeCover;
     options.vertical = datumOf(_recipe.vertical);
+    options.allHeights = _recipe.allHeights;
     options.memoryMiB = memoryMiB;
     options.output = _folder + "/" + name;
     osgGeoFX::ProgressLine line("osggeofx_panorama");

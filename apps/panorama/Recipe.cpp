@@ -4,6 +4,7 @@
 
 #include "names/SceneNames.h"
 
+#include <osgGeoFX/batch/PathText.h>
 #include <osgGeoFX/batch/WholeFile.h>
 
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using osgGeoFX::PathText;
 
 namespace geofx::panorama
 {
@@ -25,19 +27,20 @@ constexpr int newestFormat = 1;
 /// The value of a recipe that other files do not have.
 constexpr const char* formatName = "osggeofx_panorama";
 
-/// A path, or FILE:LAYER, as a file in `folder` names it, and back. Addresses and GDAL's own file systems stay as they are.
+/// A path, or FILE:LAYER, as a file in `folder` names it (PathText), and back. Addresses and GDAL's own file systems stay as they are.
 std::string relativePath(const std::string& path, const fs::path& folder)
 {
     const auto [file, layer] = names::fileAndLayer(path);
     std::error_code fault;
-    if (file.empty() || !fs::exists(file, fault)) return path;
+    if (file.empty() || !fs::exists(file, fault)) return PathText::of(path);
     const fs::path result = fs::relative(file, folder, fault);
-    return (fault || result.empty() ? fs::absolute(file).string() : result.string()) +
-           (layer.empty() ? "" : ":" + layer);
+    return PathText::of((fault || result.empty() ? fs::absolute(file).string() : result.string()) +
+                        (layer.empty() ? "" : ":" + layer));
 }
 
-std::string pathFrom(const std::string& path, const fs::path& folder)
+std::string pathFrom(const std::string& text, const fs::path& folder)
 {
+    const std::string path = PathText::path(text);
     if (path.empty() || fs::path(path).is_absolute()) return path;
     std::error_code fault;
     const std::string beside = (folder / path).string();
@@ -107,6 +110,7 @@ Recipe Recipe::read(const std::string& file)
         recipe.landCoverTable = pathFrom(json.value("landCoverTable", ""), folder);
         recipe.treeCover = pathFrom(json.value("treeCover", ""), folder);
         recipe.vertical = json.value("vertical", "none");
+        recipe.allHeights = json.value("allHeights", false);
         recipe.palette = json.value("palette", "");
         if (recipe.palette != colorBlind) recipe.palette = pathFrom(recipe.palette, folder);
         recipe.width = json.at("size").at(0).get<int>();
@@ -173,6 +177,7 @@ Json jsonOf(const Recipe& recipe, const fs::path& folder)
     put("landCoverTable", recipe.landCoverTable);
     put("treeCover", recipe.treeCover);
     json["vertical"] = recipe.vertical;
+    if (recipe.allHeights) json["allHeights"] = true;
     if (recipe.palette == colorBlind)
         json["palette"] = recipe.palette;
     else

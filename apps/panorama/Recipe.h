@@ -31,6 +31,7 @@ struct Recipe
     bool geocentric = true; ///< whether places are longitude and latitude, or the terrain's own x and y
     std::string landCover, landCoverTable, treeCover;
     std::string vertical = "none"; ///< as osggeofx_build's --vertical
+    bool allHeights = false;       ///< as osggeofx_build's --all-heights
     std::string palette;           ///< an image, or `colorBlind`; empty for the season's own
     int width = 1600, height = 900;
     double dpi = 0.0;         ///< pixels for each inch of a print; 0: none

@@ -71,6 +71,7 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
     summary.file = options.output + "/terrain.osgb";
     summary.levels = plan.scheme.finestLevel + 1;
     summary.samples = plan.estimate.samples;
+    summary.heightUnits = plan.heightUnits;
     const FolderState state = prepareFolder(plan);
     summary.updated = state.update;
     summary.allBecause = state.allBecause;
@@ -83,6 +84,8 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
                              ": the finished database cannot be read; build again without --resume.");
         summary.tiles = static_cast<std::uint64_t>(tiles);
         (options.resume ? summary.tilesReused : summary.tilesKept) = summary.tiles;
+        root->getUserValue("geofx.minHeight", summary.lowestHeight);
+        root->getUserValue("geofx.maxHeight", summary.highestHeight);
         root->getUserValue("geofx.filledShare", summary.filledShare);
         root->getUserValue("geofx.openShare", summary.openShare);
         summary.textures = readTextures(*root);
@@ -103,6 +106,8 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
         summary.units = result.units;
         summary.unitsKept = result.unitsKept;
         summary.textures = result.textures.summary();
+        summary.lowestHeight = static_cast<double>(plan.whole().minHeight);
+        summary.highestHeight = static_cast<double>(plan.whole().maxHeight);
         summary.filledShare = filledShare(plan);
         summary.openShare = openShare(plan);
     }

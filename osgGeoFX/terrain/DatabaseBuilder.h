@@ -49,7 +49,11 @@ struct BuildOptions
     std::string landCover;            ///< class raster, one byte band; empty for none
     std::string landCoverTable;       ///< the meaning of its values, for readLandCoverTable()
     std::string treeCover;            ///< raster of the share under trees, percent; empty for none
-    int epsg = 0;                     ///< EPSG code of a projected database; 0 for a geocentric one (WGS 84)
+    /// Takes all values of elevation rasters as heights. Else those that plainly are none count as missing, though their file
+    /// does not declare them: a single value far from all others, one that is all around turned data, and heights beyond −12,000 and
+    /// 9,500 m. A warning states the first two.
+    bool allHeights = false;
+    int epsg = 0; ///< EPSG code of a projected database; 0 for a geocentric one (WGS 84)
     VerticalDatum vertical = VerticalDatum::None;
     Voids voids = Voids::FILL;
     /// The distance from the data up to which voids are filled, in samples of the elevation, 1…500. An area into which
@@ -144,8 +148,10 @@ struct BuildSummary
     std::string allBecause;        ///< why an update has built everything, as a clause; else empty
     int levels = 0;                ///< levels of detail
     std::uint64_t samples = 0;     ///< grid posts of the finest level
-    double filledShare = 0.0;      ///< of the posts with a height, the share in filled voids, 0…1
-    double openShare = 0.0;        ///< of all posts, the share in voids too large to be filled, 0…1
+    double lowestHeight = 0.0, highestHeight = 0.0; ///< of all posts, metres
+    std::string heightUnits;                        ///< the units of the files' heights, as a clause
+    double filledShare = 0.0; ///< of the posts with a height, the share in filled voids, 0…1
+    double openShare = 0.0;   ///< of all posts, the share in voids too large to be filled, 0…1
     TextureSummary textures;
     std::uint64_t bytes = 0;           ///< size of the database on disk
     std::uint64_t keptBytes = 0;       ///< size of what is kept for updates, besides

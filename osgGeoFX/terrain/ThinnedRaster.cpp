@@ -34,6 +34,17 @@ constexpr double leastDepth = 10.0;
 /// As BuildOptions::lakeArea; only the sea matters here.
 constexpr double lakeArea = 2e5;
 
+/// With a mask where one is needed.
+DatasetChain openMasked(const std::string& file, bool allHeights)
+{
+    DatasetChain chain = RasterFile::open(file);
+    auto mask = std::make_unique<RasterMask>(chain.top(), 1,
+                                             allHeights ? UndeclaredVoids() : UndeclaredVoids::of(file));
+    if (!mask->isEmpty() && !mask->isNoDataValue())
+        RasterMask::addTo(chain, std::move(mask), RasterMask::Form::NOT_A_NUMBER);
+    return chain;
+}
+
 /// From the values of a band to metres.
 struct HeightScale
 {
@@ -127,17 +138,17 @@ int CPL_STDCALL report(double done, const char*, void* progress)
 
 } // namespace
 
-ThinnedRaster::Size ThinnedRaster::look(const std::string& file)
+ThinnedRaster::Size ThinnedRaster::look(const std::string& file, bool allHeights)
 {
     const GdalErrorScope quiet; // also where a file's metadata are read late
     const Footprint footprint = RasterSource(file, RasterKind::Elevation).footprint(GridCrs::geocentric());
-    const DatasetChain chain = RasterFile::open(file);
-    GDALDataset* const dataset = &chain.top();
+    const DatasetChain chain = openMasked(file, allHeights);
+    GDALDataset& dataset = chain.top();
     const double metre = osg::DegreesToRadians(earthRadius);
     const double middle = osg::DegreesToRadians(0.5 * (footprint.south + footprint.north));
-    return {dataset->GetRasterXSize(), dataset->GetRasterYSize(),
+    return {dataset.GetRasterXSize(), dataset.GetRasterYSize(),
             metre * std::min(footprint.stepX * std::cos(middle), footprint.stepY),
-            hasSeaFloor(*dataset, file)};
+            hasSeaFloor(dataset, file)};
 }
 
 ThinnedRaster::Cut ThinnedRaster::cut(const std::string& file, const std::vector<osg::Vec2d>& places,
@@ -190,13 +201,10 @@ ThinnedRaster::Cut ThinnedRaster::cut(const std::string& file, const std::vector
 }
 
 void ThinnedRaster::write(const std::string& file, const Cut& cut, const std::string& output,
-                          const std::function<bool(double)>& progress)
+                          const std::function<bool(double)>& progress, bool allHeights)
 {
     const GdalErrorScope quiet;
-    DatasetChain chain = RasterFile::open(file);
-    auto mask = std::make_unique<RasterMask>(chain.top(), 1);
-    if (!mask->isEmpty() && !mask->isNoDataValue())
-        RasterMask::addTo(chain, std::move(mask), RasterMask::Form::NOT_A_NUMBER);
+    const DatasetChain chain = openMasked(file, allHeights);
     std::vector<std::string> words = {
         "-of", "GTiff",     "-ot", "Float32",       "-r",  "average",         "-b", "1",
         "-co", "TILED=YES", "-co", "COMPRESS=NONE", "-co", "BIGTIFF=IF_SAFER"};
@@ -226,7 +234,8 @@ void ThinnedRaster::write(const std::string& file, const Cut& cut, const std::st
     const bool made = copy && !misused;
     // GDAL leaves them out where the type changes.
     if (made) takeScale(*chain.file().GetRasterBand(1), *copy->GetRasterBand(1));
-    if (made && hasSeaFloor(*copy, file)) flattenSea(*copy, unfinished, look(file).spacing * cut.factor);
+    if (made && hasSeaFloor(*copy, file))
+        flattenSea(*copy, unfinished, look(file, allHeights).spacing * cut.factor);
     copy.reset(); // Writes what is left.
     std::error_code fault;
     if (made && !errors.failed()) std::filesystem::rename(unfinished, output, fault);

@@ -29,7 +29,8 @@ struct OSGGEOFXDATA_EXPORT ThinnedRaster
         double spacing = 0.0;  ///< metres from one sample to the next, the smaller of both directions
         bool seaFloor = false; ///< whether some heights are depths: more than 10 m below zero
     };
-    static Size look(const std::string& file);
+    /// `allHeights`: as BuildOptions::allHeights, here and below.
+    static Size look(const std::string& file, bool allHeights = false);
 
     /// A part of a raster, and how much coarser the copy is.
     struct Cut
@@ -45,7 +46,7 @@ struct OSGGEOFXDATA_EXPORT ThinnedRaster
     /// finds it) gets the height 0: pictures that show heights as such want the surface, not the floor. Land below the
     /// sea stays. `progress` gets the finished share, and returns false to cancel, which throws.
     static void write(const std::string& file, const Cut& cut, const std::string& output,
-                      const std::function<bool(double)>& progress = {});
+                      const std::function<bool(double)>& progress = {}, bool allHeights = false);
 };
 
 } // namespace osgGeoFX

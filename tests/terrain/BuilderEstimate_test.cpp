@@ -11,6 +11,7 @@
 
 #include <chrono>
 #include <regex>
+#include <sys/resource.h>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -48,6 +49,15 @@ protected:
         EXPECT_FALSE(fs::exists(_folder / "db"));
     }
 
+    /// What the process has had of cores, seconds.
+    static double coreSeconds()
+    {
+        rusage usage{};
+        getrusage(RUSAGE_SELF, &usage);
+        return static_cast<double>(usage.ru_utime.tv_sec) +
+               1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+    }
+
     const TempDir _folder;
 };
 
@@ -65,9 +75,14 @@ TEST_F(BuilderEstimate, IsAboutWhatTheBuildTakes)
         SCOPED_TRACE(dem);
         fs::remove_all(_folder / "db");
         auto o = options({dem});
+        o.threads = 1;
         const BuildEstimate estimate = estimateBuild(o);
         EXPECT_FALSE(fs::exists(o.output));
+        const double start = coreSeconds();
         const BuildSummary summary = buildDatabase(o);
+        // A plain takes less.
+        EXPECT_GT(estimate.seconds, (coreSeconds() - start) / 4.0);
+        EXPECT_LT(estimate.seconds, (coreSeconds() - start) * (dem == smooth ? 12.0 : 4.0));
         EXPECT_EQ(estimate.samples, summary.samples);
         EXPECT_EQ(estimate.levels, summary.levels);
         EXPECT_EQ(estimate.tiles, summary.tiles);

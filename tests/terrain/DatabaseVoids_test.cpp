@@ -285,6 +285,57 @@ TEST_F(DatabaseVoids, TheOutsideStaysOutside)
     EXPECT_GT(filled, 317 + 160);
 }
 
+// As files have them that were made without care: a pit of 10 km, and a sea around a turned survey.
+TEST_F(DatabaseVoids, HeightsThatAreNoneCountAsVoidsUnlessTheyAreAskedFor)
+{
+    const Dem whole(140, 120, [](int column, int row) { return 300.0 + relief(column, row); });
+    const auto written = [&](const Dem& dem, const std::string& name)
+    {
+        TestRaster raster(dem.columns, dem.rows);
+        raster.placed(600000.0, 2400000.0, 30.0, 30.0).crs("EPSG:32604");
+        return raster.fill([&](int column, int row, int) { return static_cast<double>(dem.at(column, row)); })
+            .write(path(name));
+    };
+    Dem pit = whole, survey = whole;
+    for (int row = 50; row < 56; ++row)
+        for (int column = 60; column < 70; ++column)
+            pit.at(column, row) = -9999.0f;
+    const auto isInside = [](int column, int row)
+    {
+        const double x = column - 69.5, y = row - 59.5;
+        return std::abs(x + 0.4 * y) < 50.0 && std::abs(y - 0.4 * x) < 40.0;
+    };
+    for (int row = 0; row < survey.rows; ++row)
+        for (int column = 0; column < survey.columns; ++column)
+            if (!isInside(column, row)) survey.at(column, row) = 0.0f;
+    for (const bool all : {false, true})
+    {
+        auto options = optionsFor({written(pit, "pit.tif")}, path(all ? "pit-all" : "pit"));
+        options.allHeights = all;
+        const auto summary = buildDatabase(options);
+        EXPECT_EQ(summary.lowestHeight,
+                  all ? -9999.0
+                      : static_cast<double>(*std::min_element(whole.values.begin(), whole.values.end())));
+        EXPECT_EQ(summary.highestHeight,
+                  static_cast<double>(*std::max_element(whole.values.begin(), whole.values.end())));
+        EXPECT_NEAR(summary.filledShare, all ? 0.0 : 60.0 / (140.0 * 120.0), 1e-9);
+        EXPECT_NE(summary.heightUnits.find("metres"), std::string::npos) << summary.heightUnits;
+        // Next to the pit, too, heights are as they were.
+        const Dem built = builtHeights(options.output, whole);
+        EXPECT_NEAR(static_cast<double>(built.at(59, 52)), static_cast<double>(whole.at(59, 52)), 0.05);
+        EXPECT_EQ(built.at(64, 52) < -9000.0f, all);
+
+        auto turned = optionsFor({written(survey, "survey.tif")}, path(all ? "survey-all" : "survey"));
+        turned.allHeights = all;
+        EXPECT_EQ(buildDatabase(turned).lowestHeight > 0.0, !all);
+        const Dem seen = builtHeights(turned.output, whole);
+        for (const auto& [column, row] :
+             {std::pair(2, 2), std::pair(137, 2), std::pair(2, 117), std::pair(137, 117)})
+            EXPECT_EQ(seen.at(column, row) == 0.0f, all) << column << " " << row;
+        EXPECT_NEAR(static_cast<double>(seen.at(70, 60)), static_cast<double>(whole.at(70, 60)), 0.05);
+    }
+}
+
 TEST_F(DatabaseVoids, WhereNoFileLiesIsNoVoid)
 {
     // Three tiles of four, with a hole on the border between two of them, and one in the corner of all.

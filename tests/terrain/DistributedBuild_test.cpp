@@ -166,6 +166,15 @@ TEST_F(DistributedBuild, PlanTellsOptionsAndStages)
     EXPECT_EQ(refusal({"heights:0"}), "no error");
 }
 
+TEST_F(DistributedBuild, NamesNeedNotBeUtf8)
+{
+    const fs::path name = _folder / "m\xe4p.tif";
+    fs::rename(_options.dems[0], name);
+    _options.dems = {name.string()};
+    planBuild(_options);
+    EXPECT_EQ(refusal({"heights:0"}), "no error");
+}
+
 /// A worker compares what its options say with what the plan was made from, so it would refuse if one were lost.
 TEST_F(DistributedBuild, PlanKeepsEveryOption)
 {
@@ -187,6 +196,7 @@ TEST_F(DistributedBuild, PlanKeepsEveryOption)
             .string();
     _options.treeCover = bytes("trees.tif");
     _options.epsg = 32604;
+    _options.allHeights = true;
     _options.vertical = VerticalDatum::Ellipsoid;
     _options.voids = Voids::KEEP;
     _options.treeLine = 0.1 + 0.2; // no short decimal

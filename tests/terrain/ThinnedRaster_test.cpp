@@ -172,3 +172,27 @@ TEST(ThinnedRaster, SaysWhatIsWrong)
               "no error");
     EXPECT_FALSE(std::filesystem::exists(stopped));
 }
+
+TEST(ThinnedRaster, HeightsThatAreNoneAreNotAveraged)
+{
+    const TempDir folder;
+    const std::string file = in(folder, "a.tif"), copy = in(folder, "b.tif");
+    // The file declares another value.
+    write(file, 100,
+          [](int x, int y) { return x > 41 && x < 60 && y > 30 && y < 51 ? -32768.0 : 500.0 + 3.0 * x + y; });
+    for (const bool all : {false, true})
+    {
+        EXPECT_EQ(ThinnedRaster::look(file, all).seaFloor, all);
+        ThinnedRaster::write(file, ThinnedRaster::cut(file, {}, 4), copy, {}, all);
+        int columns = 0, rows = 0;
+        float lowest = 1e9f;
+        int holes = 0;
+        for (const float height : read(copy, columns, rows))
+        {
+            lowest = std::min(lowest, height);
+            holes += std::isnan(height) ? 1 : 0;
+        }
+        EXPECT_EQ(lowest < 500.0f, all);
+        EXPECT_EQ(holes > 0, !all);
+    }
+}

@@ -140,6 +140,18 @@ std::optional<double> Lengths::metresPerUnit(const std::string& unit)
     return found->metres;
 }
 
+std::string Lengths::unitInWords(double metres)
+{
+    constexpr Unit names[] = {
+        {"metres", 1.0},       {"feet", METRES_PER_FOOT}, {"US survey feet", metresPerSurveyFoot},
+        {"decimetres", 0.1},   {"centimetres", 0.01},     {"millimetres", 0.001},
+        {"kilometres", 1000.0}};
+    // PROJ's feet differ in the last digits.
+    for (const Unit& each : names)
+        if (std::abs(metres - each.metres) < 1e-9 * metres) return each.word;
+    return CPLSPrintf("units of %.9g m", metres);
+}
+
 std::optional<double> Lengths::read(const std::string& text, double metresPerPlain)
 {
     const std::size_t start = text.find_first_not_of(" \t+");

@@ -21,6 +21,9 @@ public:
     /// "yd", "fathom" and their like, in any case. Empty for any other word.
     static std::optional<double> metresPerUnit(const std::string& unit);
 
+    /// A unit in words: "metres", "feet", "US survey feet"; others as "units of 0.9144 m".
+    static std::string unitInWords(double metres);
+
     /** A length in words, metres: "12", "12.5 m", "2,014 ft", "2 014 m", "12'6\"". Commas, spaces and apostrophes may stand
         between groups of three digits; any other comma is a decimal point. A number without a unit counts `metresPerPlain`.
         Words behind the unit, such as "(about)", are left out. Empty if the text begins with no number or goes on with anything

@@ -217,9 +217,10 @@ CPLErr MaskedBand::IReadBlock(int column, int row, void* data)
 
 } // namespace
 
-RasterMask::RasterMask(GDALDataset& dataset, int bands)
+RasterMask::RasterMask(GDALDataset& dataset, int bands, UndeclaredVoids undeclared)
+    : _first(dataset.GetRasterBand(1)), _undeclared(std::move(undeclared))
 {
-    GDALRasterBand& first = *dataset.GetRasterBand(1);
+    GDALRasterBand& first = *_first;
     if (hasOwnMask(first))
     {
         const int masks = first.GetMaskFlags() & GMF_PER_DATASET ? 1 : bands;
@@ -272,6 +273,17 @@ bool RasterMask::read(int left, int top, int columns, int rows, unsigned char* o
     {
         if (!readAlpha(*_alpha, left, top, columns, rows, part)) return false;
         multiply(out, part);
+    }
+    if (!_undeclared.isEmpty())
+    {
+        std::vector<double> values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+        if (_first->RasterIO(GF_Read, left, top, columns, rows, values.data(), columns, rows, GDT_Float64, 0,
+                             0, nullptr) != CE_None)
+            return false;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (_undeclared.has(values[i], left + static_cast<int>(i) % columns,
+                                top + static_cast<int>(i) / columns))
+                out[i] = 0;
     }
     return true;
 }

@@ -5,6 +5,7 @@
 // Private to osgGeoFXData: consumers of the library do not need GDAL's headers.
 
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
+#include <osgGeoFX/geodata/detail/UndeclaredVoids.h>
 
 #include <memory>
 #include <vector>
@@ -14,19 +15,22 @@ namespace osgGeoFX
 
 /** Which pixels of a raster are missing, in one place for all that read rasters.
 
-    A pixel is missing where the raster's mask is 0 (in the file or in a file beside it), where its alpha band is 0, or where all of
-    its bands have their no-data value. One band alone may have that value by chance: a color with no red is no hole. GDAL's own masks
+    A pixel is missing where the raster's mask is 0 (in the file or in a file beside it), where its alpha band is 0, where all of
+    its bands have their no-data value, or where its first band has an undeclared one, if such are given. One band alone may have that value by chance: a color with no red is no hole. GDAL's own masks
     show one of these three, and its virtual datasets show the mask of a band but not that of a color. Not thread-safe. */
 class RasterMask
 {
 public:
     /// Of the first `bands` bands. The dataset must outlive the mask.
-    RasterMask(GDALDataset& dataset, int bands);
+    RasterMask(GDALDataset& dataset, int bands, UndeclaredVoids undeclared = {});
 
     /// Whether no pixel can be missing.
-    bool isEmpty() const { return _masks.empty() && _noData.empty() && !_alpha; }
+    bool isEmpty() const { return _masks.empty() && _noData.empty() && !_alpha && _undeclared.isEmpty(); }
     /// Whether it is the no-data value of a single band and nothing else. GDAL's readers go by that themselves.
-    bool isNoDataValue() const { return _masks.empty() && _noData.size() == 1 && !_alpha; }
+    bool isNoDataValue() const
+    {
+        return _masks.empty() && _noData.size() == 1 && !_alpha && _undeclared.isEmpty();
+    }
 
     /// From 0 (missing) to 255 for the pixels of a window, in close rows. False where they cannot be read; GDAL has said why then.
     bool read(int left, int top, int columns, int rows, unsigned char* out);
@@ -55,6 +59,8 @@ private:
     std::vector<GDALRasterBand*> _masks; ///< one for all bands, or one for each
     std::vector<std::unique_ptr<GDALRasterBand>> _noData;
     GDALRasterBand* _alpha = nullptr;
+    GDALRasterBand* const _first;
+    const UndeclaredVoids _undeclared;
 };
 
 } // namespace osgGeoFX

@@ -7,6 +7,7 @@
 #include <osgGeoFX/geodata/detail/RasterFile.h>
 #include <osgGeoFX/geodata/detail/RasterMask.h>
 #include <osgGeoFX/geodata/detail/ReadingErrors.h>
+#include <osgGeoFX/geodata/detail/TileAddress.h>
 #include <osgGeoFX/geodata/detail/VirtualRaster.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
@@ -78,20 +79,22 @@ struct RasterSource::WarpRequest
     bool alpha = false;
 };
 
-RasterSource::RasterSource(const std::string& file, RasterKind kind) : _file(file)
+RasterSource::RasterSource(const std::string& file, RasterKind kind, const UndeclaredVoids& undeclared)
+    : _file(file)
 {
     initialiseGdal();
     const std::string path = RasterFile::parse(file).first;
     VSIStatBufL status;
     const bool isThere = VSIStatL(path.c_str(), &status) == 0;
     // Other names with a colon are GDAL's own.
-    if (!isThere && path.find(':') == std::string::npos) fail("there is no such file; check the path");
+    if (!isThere && path.find(':') == std::string::npos && !TileAddress::is(file))
+        fail("there is no such file; check the path");
     if (isThere && VSI_ISREG(status.st_mode) && status.st_size == 0)
         fail("the file is empty; fetch or export it again");
     _chain = RasterFile::open(file);
     const std::string fault = faultOfBlocks(_chain.top());
     if (!fault.empty()) fail(fault);
-    openAs(kind);
+    openAs(kind, undeclared);
 }
 
 RasterSource::~RasterSource() = default;
@@ -111,7 +114,7 @@ void RasterSource::translate(const std::vector<std::string>& arguments)
     addVirtualRaster(_chain, arguments, _file);
 }
 
-void RasterSource::openAs(RasterKind kind)
+void RasterSource::openAs(RasterKind kind, const UndeclaredVoids& undeclared)
 {
     const GdalErrorScope quiet;
     const bool placed = _chain.top().GetGeoTransform(_geoTransform.data()) == CE_None;
@@ -134,7 +137,7 @@ void RasterSource::openAs(RasterKind kind)
 
     if (kind != RasterKind::Imagery)
     {
-        auto mask = std::make_unique<RasterMask>(_chain.top(), 1);
+        auto mask = std::make_unique<RasterMask>(_chain.top(), 1, undeclared);
         if (!mask->isEmpty() && !mask->isNoDataValue())
             RasterMask::addTo(_chain, std::move(mask),
                               kind == RasterKind::LandCover ? RasterMask::Form::ALPHA
@@ -144,9 +147,10 @@ void RasterSource::openAs(RasterKind kind)
     {
         if (band->GetScale() != 1.0 || band->GetOffset() != 0.0)
             translate({"-b", "1", "-ot", "Float32", "-unscale"});
-        const double metres = Lengths::metresPerHeight(*band, _srs, _file);
-        if (metres != 1.0)
-            translate({"-b", "1", "-ot", "Float32", "-scale", "0", "1", "0", CPLSPrintf("%.17g", metres)});
+        _metresPerHeight = Lengths::metresPerHeight(*band, _srs, _file);
+        if (_metresPerHeight != 1.0)
+            translate({"-b", "1", "-ot", "Float32", "-scale", "0", "1", "0",
+                       CPLSPrintf("%.17g", _metresPerHeight)});
     }
     else if (kind == RasterKind::Imagery)
     {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
+#include <osgGeoFX/geodata/detail/UndeclaredVoids.h>
 
 #include <array>
 #include <optional>
@@ -55,7 +56,8 @@ enum class RasterKind
 class RasterSource
 {
 public:
-    RasterSource(const std::string& file, RasterKind kind);
+    /// `undeclared`: heights of an elevation that are none.
+    RasterSource(const std::string& file, RasterKind kind, const UndeclaredVoids& undeclared = {});
     RasterSource(RasterSource&&) = default;
     ~RasterSource();
 
@@ -82,12 +84,14 @@ public:
     void colorize(const std::array<std::array<unsigned char, 4>, 256>& colors);
 
     const std::string& file() const { return _file; }
+    /// Metres in the unit of the file's heights.
+    double metresPerHeight() const { return _metresPerHeight; }
 
 private:
     /// Widens the footprint of a raster around a pole, or all around the globe, to every longitude.
     void takePoles(const GridCrs& crs, Footprint& result) const;
     struct WarpRequest;
-    void openAs(RasterKind kind);
+    void openAs(RasterKind kind, const UndeclaredVoids& undeclared);
     /// By ground control points, or by arrays of places.
     void warpByPlaces(RasterKind kind);
     void translate(const std::vector<std::string>& arguments);
@@ -98,6 +102,7 @@ private:
     std::string _file;
     OGRSpatialReference _srs;
     std::array<double, 6> _geoTransform{};
+    double _metresPerHeight = 1.0;
     bool _colorized = false;
     DatasetChain _chain; ///< the file, then the virtual datasets on top of it; the last is read
 };

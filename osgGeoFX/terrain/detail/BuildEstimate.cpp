@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 // the relief of the Himalaya, with colors by heights and by land cover. The bytes of normals are the mean of Oahu and
 // Fuji.
 constexpr double BYTES_PER_POST = 12.0, BYTES_PER_TEXEL = 5.0, BYTES_PER_NORMAL = 1.0;
-constexpr double SECONDS_PER_POST = 4e-7, SECONDS_PER_TEXEL = 2.5e-7;
+constexpr double SECONDS_PER_POST = 4.5e-6, SECONDS_PER_TEXEL = 4e-7, SECONDS_OF_COMPRESSION = 7.5e-7;
 // Even a plain takes this share of the estimate. With less room the disk would be full before the end.
 constexpr double LEAST_SHARE = 0.25;
 // Work files, bytes. Posts: heights, and what units hand on. Ground cells: heights, covers and distances.
@@ -82,7 +82,8 @@ void BuildPlan::chooseEstimate()
     estimate.bytes = static_cast<std::uint64_t>(bytes);
     estimate.workBytes = static_cast<std::uint64_t>(workBytes);
     const int cores = options.threads > 0 ? options.threads : coreCount();
-    estimate.seconds = (posts * SECONDS_PER_POST + texels * SECONDS_PER_TEXEL) / cores;
+    const double perTexel = SECONDS_PER_TEXEL + (options.compressTextures ? SECONDS_OF_COMPRESSION : 0.0);
+    estimate.seconds = (posts * SECONDS_PER_POST + texels * perTexel) / cores;
 
     const std::string remedy = "give a smaller region or coarser rasters (gdal_translate -projwin, gdalwarp "
                                "-tr); the finest raster of all sets the "

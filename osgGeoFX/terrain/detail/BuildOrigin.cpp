@@ -51,7 +51,11 @@ std::string sourceLine(const char* kind, const std::string& name)
 void BuildPlan::chooseFingerprint()
 {
     for (std::size_t i = 0; i < options.dems.size(); ++i)
-        demSources.push_back({sourceLine("elevation", options.dems[i]), _dems[i]});
+    {
+        std::string line = sourceLine("elevation", options.dems[i]);
+        if (!demVoids[i].isEmpty()) line.insert(line.size() - 1, ", where " + demVoids[i].text());
+        demSources.push_back({line, _dems[i]});
+    }
     for (std::size_t i = 0; i < options.imagery.size(); ++i)
         imagerySources[i].identity = sourceLine("imagery", options.imagery[i]);
     if (landCoverSource) landCoverSource->identity = sourceLine("land cover", options.landCover);
@@ -76,6 +80,7 @@ void BuildPlan::chooseFingerprint()
 
     settings.precision(17);
     if (options.treeLine) settings << "tree line " << *options.treeLine << "\n";
+    if (options.allHeights) settings << "all heights\n";
     settings << "lake area " << options.lakeArea << "\n";
     if (options.voids == Voids::FILL)
         settings << "voids filled up to " << options.voidReach << " samples, smoothed "

@@ -6,6 +6,7 @@
 #include <osgGeoFX/terrain/detail/TileTextures.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/detail/Lengths.h>
 
 #include <algorithm>
 #include <cmath>
@@ -43,14 +44,6 @@ constexpr double CRS_MARGIN = 10.0;
 void require(bool condition, const std::string& sentence)
 {
     if (!condition) throw BuildError(sentence);
-}
-
-std::vector<Footprint> footprints(const std::vector<std::string>& files, RasterKind kind, const GridCrs& crs)
-{
-    std::vector<Footprint> result;
-    for (const auto& file : files)
-        result.push_back(RasterSource(file, kind).footprint(crs));
-    return result;
 }
 
 /// Turns footprints by full circles, so that together they take the shortest range of longitudes.
@@ -187,7 +180,15 @@ void BuildPlan::chooseExtent()
 {
     for (const auto& file : options.dems)
         if (!scheme.crs.geographic) requireWithin(scheme.crs, file);
-    auto dems = footprints(options.dems, RasterKind::Elevation, scheme.crs);
+    std::vector<Footprint> dems;
+    std::vector<double> units;
+    for (const auto& file : options.dems)
+    {
+        const RasterSource dem(file, RasterKind::Elevation);
+        dems.push_back(dem.footprint(scheme.crs));
+        units.push_back(dem.metresPerHeight());
+    }
+    lookAtHeights(units);
     if (scheme.crs.geographic) gatherLongitudes(dems);
     scheme.west = scheme.south = std::numeric_limits<double>::max();
     scheme.east = scheme.north = std::numeric_limits<double>::lowest();
@@ -216,6 +217,23 @@ void BuildPlan::chooseExtent()
                 ": the elevation is a single row, column or pixel; a terrain needs at least 2 × 2.");
     chooseLayers(dems);
     _dems = std::move(dems);
+}
+
+void BuildPlan::lookAtHeights(const std::vector<double>& units)
+{
+    const auto isFirst = [&](double unit)
+    {
+        return unit == units.front();
+    };
+    const bool alike = std::all_of(units.begin(), units.end(), isFirst);
+    for (std::size_t i = 0; i < units.size(); ++i)
+    {
+        demVoids.push_back(options.allHeights ? UndeclaredVoids() : UndeclaredVoids::of(options.dems[i]));
+        if (i > 0 && alike) continue;
+        heightUnits += (i > 0 ? ", that of " : "the unit of ") +
+                       (alike && units.size() > 1 ? "all files" : options.dems[i]) + " is taken as " +
+                       Lengths::unitInWords(units[i]);
+    }
 }
 
 void BuildPlan::chooseLayers(const std::vector<Footprint>& dems)

@@ -118,6 +118,8 @@ public:
         std::string identity;
         Footprint print;
     };
+    std::vector<UndeclaredVoids> demVoids; ///< by file of the elevation
+    std::string heightUnits;               ///< of the files of the elevation, as a clause
     std::vector<Source> demSources, imagerySources;
     std::optional<Source> landCoverSource, treeCoverSource;
 
@@ -209,6 +211,8 @@ private:
     };
     void chooseGrid();
     void chooseExtent();
+    /// `units`: of the elevation's files, metres.
+    void lookAtHeights(const std::vector<double>& units);
     void chooseLayers(const std::vector<Footprint>& dems);
     void chooseDemands();
     void chooseGround();

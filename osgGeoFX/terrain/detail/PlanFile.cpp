@@ -5,6 +5,7 @@
 #include <osgGeoFX/terrain/detail/AtomicFile.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 
+#include <osgGeoFX/batch/PathText.h>
 #include <osgGeoFX/batch/PlannedWork.h>
 #include <osgGeoFX/geodata/BuildError.h>
 
@@ -25,13 +26,20 @@ using nlohmann::json;
 
 constexpr const char* FORMAT = "osgGeoFX build plan";
 
+std::vector<std::string> mapped(std::vector<std::string> names, std::string (*map)(const std::string&))
+{
+    std::transform(names.begin(), names.end(), names.begin(), map);
+    return names;
+}
+
 json optionsOf(const BuildOptions& o)
 {
-    json result = {{"dems", o.dems},
-                   {"imagery", o.imagery},
-                   {"landCover", o.landCover},
-                   {"landCoverTable", o.landCoverTable},
-                   {"treeCover", o.treeCover},
+    json result = {{"dems", mapped(o.dems, &PathText::of)},
+                   {"imagery", mapped(o.imagery, &PathText::of)},
+                   {"landCover", PathText::of(o.landCover)},
+                   {"landCoverTable", PathText::of(o.landCoverTable)},
+                   {"treeCover", PathText::of(o.treeCover)},
+                   {"allHeights", o.allHeights},
                    {"epsg", o.epsg},
                    {"vertical", static_cast<int>(o.vertical)},
                    {"voids", static_cast<int>(o.voids)},
@@ -69,6 +77,7 @@ BuildOptions readOptions(const json& object)
     take("landCover", o.landCover);
     take("landCoverTable", o.landCoverTable);
     take("treeCover", o.treeCover);
+    take("allHeights", o.allHeights);
     take("epsg", o.epsg);
     takeKind("vertical", o.vertical);
     takeKind("voids", o.voids);
@@ -86,6 +95,10 @@ BuildOptions readOptions(const json& object)
     take("threads", o.threads);
     take("memoryMiB", o.memoryMiB);
     take("keep", o.keep);
+    o.dems = mapped(o.dems, &PathText::path);
+    o.imagery = mapped(o.imagery, &PathText::path);
+    for (std::string* const name : {&o.landCover, &o.landCoverTable, &o.treeCover})
+        *name = PathText::path(*name);
     return o;
 }
 
@@ -129,7 +142,7 @@ void PlanFile::write(const BuildPlan& plan, const BuildStages& stages)
                      {"version", VERSION},
                      {"program", "osggeofx_build"},
                      {"options", optionsOf(plan.options)},
-                     {"builtFrom", linesOf(plan.fingerprint)},
+                     {"builtFrom", mapped(linesOf(plan.fingerprint), &PathText::of)},
                      {"grid", gridOf(plan.scheme)},
                      {"estimate",
                       {{"samples", plan.estimate.samples},
@@ -179,7 +192,7 @@ PlanFile PlanFile::read(const std::string& folder)
         result.options = readOptions(document.at("options"));
         result.options.output = folder;
         for (const json& line : document.at("builtFrom"))
-            result.fingerprint += line.get<std::string>() + "\n";
+            result.fingerprint += PathText::path(line.get<std::string>()) + "\n";
         return result;
     }
     catch (const json::exception& error)

@@ -16,6 +16,8 @@ namespace
 
 // No point of the Earth has a height beyond these. Such a height is an undeclared no-data value.
 constexpr float LOWEST = -12000.0f, HIGHEST = 9500.0f;
+// No place of any planet has one beyond this.
+constexpr float FARTHEST = 1e6f;
 
 // A higher value is an undeclared no-data value. A resampling kernel may overshoot a little.
 constexpr float MOST_PERCENT = 100.5f;
@@ -75,8 +77,8 @@ unsigned char byteOf(double share)
 
 RasterStack::RasterStack(const BuildPlan& plan) : _plan(plan)
 {
-    for (const auto& file : plan.options.dems)
-        _dems.emplace_back(file, RasterKind::Elevation);
+    for (std::size_t i = 0; i < plan.options.dems.size(); ++i)
+        _dems.emplace_back(plan.options.dems[i], RasterKind::Elevation, plan.demVoids[i]);
     for (const auto& file : plan.options.imagery)
         _imagery.emplace_back(file, RasterKind::Imagery);
     _blends.resize(plan.layers.size());
@@ -196,8 +198,10 @@ std::vector<float> RasterStack::layerHeights(const BuildPlan::Layer& layer, cons
                               std::numeric_limits<float>::quiet_NaN());
     for (std::size_t i = layer.first; i < layer.last; ++i)
         _dems[i].sampleHeights(_plan.scheme.crs, lattice, result.data());
+    const bool all = _plan.options.allHeights;
+    const float lowest = all ? -FARTHEST : LOWEST, highest = all ? FARTHEST : HIGHEST;
     for (float& height : result)
-        if (!(height >= LOWEST && height <= HIGHEST)) height = std::numeric_limits<float>::quiet_NaN();
+        if (!(height >= lowest && height <= highest)) height = std::numeric_limits<float>::quiet_NaN();
     return result;
 }
 

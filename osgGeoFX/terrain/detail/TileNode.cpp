@@ -222,6 +222,7 @@ osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const TileKey& key, con
         // Bound for shaders that want it, but not enabled: the fixed functions must not draw it.
         osg::ref_ptr<osg::Texture2D> classes = new osg::Texture2D(
             _textures.data(cutImage(arrays.classes, arrays.texelColumns, x * m, y * m, m + 1, 1), false));
+        classes->setName("geofx classes");
         classes->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
         classes->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
         classes->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
