@@ -164,6 +164,8 @@ std::string TownSummary::text() const
     tell(repaired, "had an invalid outline, which was mended.");
     tell(leftOut, "were left out: their outlines cannot be used.");
     tell(outside, "were left out: they stand where the terrain has no ground.");
+    tell(parts, "are parts of buildings.");
+    tell(inParts, "outlines are not drawn, since parts stand in their place.");
     tell(otherFeatures, "features are no polygons or no buildings.");
     return out.str();
 }

@@ -24,7 +24,8 @@ struct TownOptions
 {
     /// The folder of a finished terrain database, which gets the town.
     std::string database;
-    /// Polygons with heights, in any format and CRS that OGR reads.
+    /// Polygons with heights, in any format and CRS that OGR reads. Parts of buildings (`building:part`) stand in place of an outline
+    /// if they cover half of it at least, and begin at their `min_height` or `building:min_level`.
     std::string buildings;
     std::string layer; ///< the layer; empty for all that have polygons
     /// The field of heights, from the ground to the highest point of the roof. Empty: one of the usual names. Where it has
@@ -56,6 +57,9 @@ struct TownSummary
     std::uint64_t repaired = 0; ///< whose outline was invalid and was mended
     std::uint64_t leftOut = 0;  ///< whose outline could not be used
     std::uint64_t outside = 0;  ///< that stand where the terrain has no ground
+    std::uint64_t parts =
+        0; ///< features that are parts of buildings, such as towers and what stands on columns
+    std::uint64_t inParts = 0;       ///< buildings that are drawn by their parts in place of their outline
     std::uint64_t otherFeatures = 0; ///< features that are no polygons, or no buildings by their own words
     std::uint64_t files = 0;
     std::uint64_t bytes = 0; ///< of the town's files

@@ -623,6 +623,72 @@ TEST(TownBuilder, HeightsInWords)
     EXPECT_EQ(twelve, 4);
 }
 
+// A tower and a bridge that stand in place of an outline, and a tower that does not fill its outline.
+TEST(TownBuilder, PartsStandInPlaceOfTheirOutline)
+{
+    const TempDir folder;
+    const double x = WEST + 0.05, y = NORTH - 0.05, a = 4e-4;
+    const std::vector<Feature> features = {
+        {rectangle(x, y, a, a), {"yes", "", "10", "", ""}},
+        {rectangle(x - 0.25 * a, y, 0.5 * a, a), {"", "yes", "40", "12", ""}},
+        {rectangle(x + 0.25 * a, y, 0.5 * a, a),
+         {"", "roof", "", "", "\"building:levels\"=>\"8\",\"building:min_level\"=>\"5\""}},
+        {rectangle(x + 0.01, y, a, a), {"yes", "", "10", "", ""}},
+        {rectangle(x + 0.01 + 0.1 * a, y, 0.3 * a, 0.3 * a), {"", "yes", "30", "10", ""}},
+        {rectangle(x + 0.02, y, a, a), {"", "", "9", "", ""}},      // woods, or anything
+        {rectangle(x + 0.03, y, a, a), {"yes", "", "8", "20", ""}}, // an underside above the roof
+    };
+    for (const bool tags : {false, true})
+    {
+        const std::string name = tags ? "tags" : "columns";
+        const std::string database = copyOfTerrain(folder, name);
+        std::vector<Feature> all = features;
+        std::vector<std::string> fields = {"building", "building:part", "height", "min_height", "other_tags"};
+        if (tags)
+        {
+            // As GDAL hands out OpenStreetMap's: all but `building` are further tags.
+            fields = {"building", "other_tags"};
+            for (Feature& each : all)
+            {
+                std::string text;
+                for (std::size_t i = 1; i < 4; ++i)
+                    if (!each.values[i].empty())
+                        text +=
+                            (text.empty() ? "" : ",") + std::string("\"") +
+                            std::vector<std::string>{"building", "building:part", "height", "min_height"}[i] +
+                            "\"=>\"" + each.values[i] + "\"";
+                if (!each.values[4].empty()) text += (text.empty() ? "" : ",") + each.values[4];
+                each.values = {each.values[0], text};
+            }
+        }
+        const TownSummary summary =
+            buildTown(optionsOf(database, writeFeatures(folder / (name + ".gpkg"), fields, all)));
+        EXPECT_EQ(summary.parts, 3u);
+        EXPECT_EQ(summary.inParts, 1u);
+        EXPECT_EQ(summary.otherFeatures, 1u);
+        EXPECT_EQ(summary.buildings, 5u);
+        for (const char* const level : {"detail", "single"})
+        {
+            std::vector<std::pair<double, double>> found;
+            for (const TownBuilding& each : buildingsOf(database, level))
+                found.emplace_back(each.highest, each.lowest);
+            std::sort(found.begin(), found.end());
+            ASSERT_EQ(found.size(), 5u) << level;
+            const std::pair<double, double> expected[] = {
+                {8, -1}, {10, -1}, {25.8, 15.5}, {30, 10}, {40, 12}};
+            for (std::size_t i = 0; i < 5; ++i)
+            {
+                EXPECT_NEAR(found[i].first, expected[i].first, 0.6) << level << i;
+                // Walls on the ground go into it; undersides are those above its lowest point.
+                if (expected[i].second < 0.0)
+                    EXPECT_LT(found[i].second, 0.0) << level << i;
+                else
+                    EXPECT_NEAR(found[i].second, expected[i].second, 2.0) << level << i;
+            }
+        }
+    }
+}
+
 // Over the antimeridian, on the terrain's western edge, and in the outermost tiles.
 TEST(TownBuilder, AtTheEndsOfLongitudes)
 {

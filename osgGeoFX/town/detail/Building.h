@@ -30,6 +30,7 @@ struct Building
 {
     std::vector<Ring> rings; ///< the outline, counter-clockwise, then courtyards, clockwise
     double height = 0.0;     ///< from the ground to the highest point of the roof, metres
+    double bottom = 0.0;     ///< from the ground to the underside, metres; 0 for what stands on it
     BuildingUse use = BuildingUse::HOUSE;
     bool gabled = false;
     /// What the summary counts.
@@ -49,9 +50,10 @@ struct PlacedBuilding
 {
     std::vector<Ring> rings;
     osg::Vec3d reference; ///< in the middle of the outline, on the ground
-    double foot = 0.0;    ///< the lowest ground below the outline
-    double top = 0.0;     ///< the highest point of the roof
-    double area = 0.0;    ///< square metres
+    double foot = 0.0; ///< the lowest ground below the outline, or the underside of what does not stand on it
+    bool raised = false; ///< whether it is a part above the ground, which has a floor
+    double top = 0.0;    ///< the highest point of the roof
+    double area = 0.0;   ///< square metres
     BuildingUse use = BuildingUse::HOUSE;
     bool gabled = false;
     std::uint32_t seed = 0; ///< for what differs from building to building

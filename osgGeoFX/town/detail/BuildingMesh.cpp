@@ -227,7 +227,7 @@ double roofRise(const PlacedBuilding& building)
     if (!building.gabled || !isRectangle(building.rings)) return 0.0;
     const Ring& ring = building.rings.front();
     const double narrow = std::min((ring[1] - ring[0]).length(), (ring[2] - ring[1]).length());
-    return std::min(0.36 * narrow, 0.45 * (building.top - building.reference.z()));
+    return std::min(0.36 * narrow, 0.45 * (building.top - std::max(building.reference.z(), building.foot)));
 }
 
 std::vector<double> BuildingMesh::shades(const osg::Vec2d& place, const osg::Vec3d& normal,
@@ -265,7 +265,7 @@ void BuildingMesh::wall(const PlacedBuilding& building, const osg::Vec2d& a, con
     const double length = along.length();
     if (!(length > 0.0)) return;
     const osg::Vec3d normal(along.y() / length, -along.x() / length, 0.0);
-    const double base = building.reference.z(), bottom = building.foot - _depth;
+    const double base = building.reference.z(), bottom = building.foot - (building.raised ? 0.0 : _depth);
     // The ground darkens a wall's foot only, so the shades of a high wall need a corner there.
     const bool high = _openness && eaves - base > 2.0 * Openness::groundReach;
     std::vector<double> heights = {base, eaves};
@@ -324,6 +324,8 @@ void BuildingMesh::wall(const PlacedBuilding& building, const osg::Vec2d& a, con
     part(bottom, std::min(cellar, eaves), WindowPicture::plain(), WindowPicture::plain());
     double from = std::max(bottom, cellar);
     double done = 0.0; // storeys below, whole pictures of them
+    while (base + (done + WindowPicture::above) * look.storey <= from)
+        done += WindowPicture::above;
     while (from < eaves)
     {
         const double to = std::min(eaves, base + (done + WindowPicture::above) * look.storey);
@@ -367,6 +369,17 @@ void BuildingMesh::flatRoof(const std::vector<Ring>& rings, double z, const osg:
     }
     for (const osg::Vec2d& place : triangles)
         _triangles.push_back(corner(place));
+}
+
+void BuildingMesh::floor(const PlacedBuilding& building, const osg::Vec3d& color)
+{
+    const osg::Vec2d plain = WindowPicture::plain();
+    const std::vector<osg::Vec2d> triangles = triangulate(building.rings);
+    const osg::Vec3d down(0.0, 0.0, -1.0);
+    // The other way around, to be seen from below.
+    for (auto place = triangles.rbegin(); place != triangles.rend(); ++place)
+        _triangles.push_back(vertex({place->x(), place->y(), building.foot}, down,
+                                    color * (1.0 - Openness::darkening), plain.x(), plain.y()));
 }
 
 void BuildingMesh::face(const std::vector<osg::Vec3d>& corners, const osg::Vec3d& color)
@@ -429,6 +442,7 @@ void BuildingMesh::add(const PlacedBuilding& building, BuildingLevel level, std:
     for (const Ring& ring : building.rings)
         for (std::size_t i = 0; i < ring.size(); ++i)
             wall(building, ring[i], ring[(i + 1) % ring.size()], eaves, look, detail);
+    if (building.raised) floor(building, look.wall);
     if (detail && gabled)
         gable(building, eaves, look);
     else

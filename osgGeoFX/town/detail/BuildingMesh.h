@@ -23,7 +23,8 @@ enum class BuildingLevel
 
 /** Collects buildings into one geometry in a local frame, metres.
 
-    Walls stand `depth` below the lowest ground below a building, for ground that is drawn coarsely. There is no floor. Each
+    Walls stand `depth` below the lowest ground below a building, for ground that is drawn coarsely. Only a part above the ground
+    has a floor. Each
     vertex has a normal, a color, a texture coordinate in the picture of windows (WindowPicture.h), and its building's reference
     (RigidParts). Walls face outward and courtyards inward; triangles are counter-clockwise seen from outside. Not
     thread-safe. */
@@ -56,6 +57,7 @@ private:
     std::vector<double> shades(const osg::Vec2d& place, const osg::Vec3d& normal,
                                const std::vector<double>& heights, bool roof) const;
     void flatRoof(const std::vector<Ring>& rings, double z, const osg::Vec3d& color);
+    void floor(const PlacedBuilding& building, const osg::Vec3d& color);
     void gable(const PlacedBuilding& building, double eaves, const Look& look);
     void face(const std::vector<osg::Vec3d>& corners, const osg::Vec3d& color);
 

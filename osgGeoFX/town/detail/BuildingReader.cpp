@@ -9,6 +9,7 @@
 #include <osgGeoFX/geodata/detail/Lengths.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -26,6 +27,9 @@ constexpr double TALLEST = 1500.0;
 /// Less ground than a shed's, square metres: no building.
 constexpr double LEAST_AREA = 1.0;
 constexpr double LEAST_HEIGHT = 1.0;
+constexpr double METRES_PER_STOREY = 3.1;
+/// Parts that cover so much of an outline stand in its place.
+constexpr double MOST_OF_ALL = 0.5;
 /// The most of a ring's points and of a building's rings: more is damage.
 constexpr std::size_t MOST_POINTS = 100000, MOST_RINGS = 60000;
 
@@ -45,6 +49,9 @@ bool contains(const std::string& text, std::initializer_list<const char*> words)
 struct Fields
 {
     int height = -1, storeys = -1, roof = -1, use = -1, building = -1, tags = -1;
+    int part = -1, bottom = -1, lowestStorey = -1;
+
+    bool mayHaveParts() const { return part >= 0 || tags >= 0; }
 };
 
 int fieldOf(const OGRFeatureDefn& layer, std::initializer_list<const char*> names)
@@ -65,6 +72,38 @@ std::optional<double> numberAtStart(const std::string& text, std::string& rest)
     rest.assign(end, text.data() + text.size());
     return value;
 }
+
+/// How much of an outline is below the parts of buildings: their middles and areas.
+class PartFinder
+{
+public:
+    void add(const std::vector<Ring>& rings, double area)
+    {
+        const osg::Vec2d middle = ringMiddle(rings.front());
+        _parts.push_back({middle.y(), middle.x(), area});
+    }
+    /// Ends the adding.
+    void finish() { std::sort(_parts.begin(), _parts.end()); }
+    /// The area of the parts whose middle is in an outline.
+    double areaIn(const std::vector<Ring>& rings) const
+    {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (const osg::Vec2d& place : rings.front())
+        {
+            low = std::min(low, place.y());
+            high = std::max(high, place.y());
+        }
+        double sum = 0.0;
+        for (auto part =
+                 std::lower_bound(_parts.begin(), _parts.end(), std::array<double, 3>{low, -HUGE_VAL, 0.0});
+             part != _parts.end() && (*part)[0] <= high; ++part)
+            if (isWithin(rings, {(*part)[1], (*part)[0]})) sum += (*part)[2];
+        return sum;
+    }
+
+private:
+    std::vector<std::array<double, 3>> _parts; ///< y, x, and the area
+};
 
 class Reader
 {
@@ -96,8 +135,23 @@ public:
         fields.use = fieldOf(layer, {"use", "function", "usage", "class", "fclass", "type"});
         fields.building = layer.GetFieldIndex("building");
         fields.tags = layer.GetFieldIndex("other_tags");
+        fields.part = fieldOf(layer, {"building:part", "building_part"});
+        fields.bottom = fieldOf(layer, {"min_height", "building:min_height", "minheight"});
+        fields.lowestStorey =
+            fieldOf(layer, {"building:min_level", "building_min_level", "min_level", "min_floor"});
         return fields;
     }
+
+    /// Looks for parts of buildings before buildings are taken.
+    void lookForParts(const OGRFeature& feature, const OGRGeometry& geometry,
+                      OGRCoordinateTransformation& toGrid, const Fields& fields)
+    {
+        std::vector<std::vector<Ring>> outlines;
+        if (isPart(feature, fields) && collect(geometry, toGrid, outlines))
+            for (const std::vector<Ring>& rings : outlines)
+                _parts.add(rings, areaOf(rings));
+    }
+    void finishParts() { _parts.finish(); }
 
     void take(const OGRFeature& feature, const OGRGeometry& geometry, OGRCoordinateTransformation& toGrid,
               const Fields& fields)
@@ -106,8 +160,9 @@ public:
         const bool polygons = type == wkbPolygon || OGR_GT_IsSubClassOf(type, wkbGeometryCollection);
         const std::string building = text(feature, fields.building);
         // OpenStreetMap's polygons are of all kinds. In other data a field of this name may be a building's name.
+        const bool part = isPart(feature, fields);
         const bool other =
-            fields.building >= 0 && (building == "no" || (building.empty() && fields.tags >= 0));
+            !part && fields.building >= 0 && (building == "no" || (building.empty() && fields.tags >= 0));
         if (!polygons || other)
         {
             ++_summary.otherFeatures;
@@ -122,15 +177,18 @@ public:
         for (std::vector<Ring>& rings : outlines)
         {
             Building each;
-            const osg::Vec2d metres = _grid.metres(rings.front().front().y());
-            double area = 0.0;
-            for (const Ring& ring : rings)
-                area += ringArea(ring) * metres.x() * metres.y();
+            const double area = areaOf(rings);
             if (!(area >= LEAST_AREA))
             {
                 ++_summary.leftOut;
                 continue;
             }
+            if (!part && _parts.areaIn(rings) >= MOST_OF_ALL * area)
+            {
+                ++_summary.inParts;
+                continue;
+            }
+            if (part) ++_summary.parts;
             each.rings = std::move(rings);
             if (_repaired) each.notes |= Building::REPAIRED;
             describe(each, feature, fields, area);
@@ -139,6 +197,22 @@ public:
     }
 
 private:
+    static bool isPart(const OGRFeature& feature, const Fields& fields)
+    {
+        const std::string part = text(feature, fields.part, fields.tags, "building:part");
+        const std::string building = text(feature, fields.building);
+        return !part.empty() && part != "no" && part != "0" && (building.empty() || building == "no");
+    }
+
+    double areaOf(const std::vector<Ring>& rings) const
+    {
+        const osg::Vec2d metres = _grid.metres(rings.front().front().y());
+        double area = 0.0;
+        for (const Ring& ring : rings)
+            area += ringArea(ring) * metres.x() * metres.y();
+        return area;
+    }
+
     static std::string text(const OGRFeature& feature, int field)
     {
         return field >= 0 && feature.IsFieldSetAndNotNull(field) ? lower(feature.GetFieldAsString(field))
@@ -285,7 +359,7 @@ private:
             building.height = *height;
         else if (storeys)
         {
-            building.height = 3.1 * *storeys + 1.0;
+            building.height = METRES_PER_STOREY * *storeys + 1.0;
             building.notes |= Building::BY_STOREYS;
         }
         else
@@ -294,6 +368,7 @@ private:
             building.height = area < 40.0 ? 3.0 : area < 300.0 ? 6.0 : area < 1200.0 ? 10.0 : 12.0;
             building.notes |= Building::BY_AREA;
         }
+        takeBottom(building, feature, fields);
         building.use = useOf(use, building.height, area);
         const bool rectangle = building.rings.size() == 1 && building.rings.front().size() == 4;
         if (roof.empty() || roof == "unknown")
@@ -303,20 +378,35 @@ private:
         if (building.gabled && rectangle) building.notes |= Building::GABLED;
     }
 
+    /// The underside of a part above the ground. One that is not below the roof is no use.
+    void takeBottom(Building& building, const OGRFeature& feature, const Fields& fields) const
+    {
+        const std::optional<double> told = lengthOf(feature, fields.bottom, fields.tags, "min_height");
+        const std::string words = text(feature, fields.lowestStorey, fields.tags, "building:min_level");
+        std::string rest;
+        const double bottom = told ? *told : METRES_PER_STOREY * numberAtStart(words, rest).value_or(0.0);
+        if (!(bottom > 0.0 && bottom <= TALLEST)) return;
+        if (building.notes & Building::BY_AREA) building.height += bottom;
+        if (bottom <= building.height - LEAST_HEIGHT) building.bottom = bottom;
+    }
+
+    /// A length, metres; empty if there is none that is a number.
+    std::optional<double> lengthOf(const OGRFeature& feature, int field, int tags, const char* tag) const
+    {
+        const std::string words = text(feature, field, tags, tag);
+        // Numbers as they are, without a detour by text.
+        const OGRFieldType type = field >= 0 ? feature.GetFieldDefnRef(field)->GetType() : OFTString;
+        const double metresPerPlain = _options.unit == HeightUnit::FEET ? Lengths::METRES_PER_FOOT : 1.0;
+        if ((type == OFTReal || type == OFTInteger || type == OFTInteger64) &&
+            feature.IsFieldSetAndNotNull(field))
+            return feature.GetFieldAsDouble(field) * metresPerPlain;
+        return Lengths::read(words, metresPerPlain);
+    }
+
     std::optional<double> heightOf(const OGRFeature& feature, const Fields& fields, Building& building) const
     {
-        std::string words = text(feature, fields.height, fields.tags, "height");
-        if (words.empty()) return {};
-        // Numbers as they are, without a detour by text.
-        const OGRFieldType type =
-            fields.height >= 0 ? feature.GetFieldDefnRef(fields.height)->GetType() : OFTString;
-        const double metresPerPlain = _options.unit == HeightUnit::FEET ? Lengths::METRES_PER_FOOT : 1.0;
-        std::optional<double> height;
-        if ((type == OFTReal || type == OFTInteger || type == OFTInteger64) &&
-            feature.IsFieldSetAndNotNull(fields.height))
-            height = feature.GetFieldAsDouble(fields.height) * metresPerPlain;
-        else
-            height = Lengths::read(words, metresPerPlain);
+        if (text(feature, fields.height, fields.tags, "height").empty()) return {};
+        const std::optional<double> height = lengthOf(feature, fields.height, fields.tags, "height");
         if (height && std::isfinite(*height) && *height >= LEAST_HEIGHT && *height <= TALLEST) return height;
         building.notes |= Building::BAD_HEIGHT;
         return {};
@@ -353,6 +443,7 @@ private:
     const double _metresPerUnit;
     TownSummary& _summary;
     const std::function<void(Building&&)>& _take;
+    PartFinder _parts;
     std::vector<double> _x, _y;
     std::vector<int> _placed;
     bool _repaired = false; ///< whether the outlines in work were mended
@@ -376,14 +467,43 @@ void readBuildings(const TownOptions& options, const TownGrid& grid, const std::
     Reader reader(options, grid, metresPerUnit, summary, take);
     bool any = false;
     std::uint64_t done = 0;
+    const auto mayHavePolygons = [&](OGRLayer& layer)
+    {
+        const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
+        return type == wkbUnknown || type == wkbPolygon || type == wkbMultiPolygon ||
+               type == wkbGeometryCollection || type == wkbCurvePolygon || type == wkbMultiSurface ||
+               !options.layer.empty();
+    };
+    // Parts first, for they replace outlines, wherever these stand in the file.
     forEachLayer(*dataset, options.layer, options.buildings,
                  [&](OGRLayer& layer)
                  {
-                     const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
-                     const bool may = type == wkbUnknown || type == wkbPolygon || type == wkbMultiPolygon ||
-                                      type == wkbGeometryCollection || type == wkbCurvePolygon ||
-                                      type == wkbMultiSurface;
-                     if (!may && options.layer.empty()) return;
+                     if (!mayHavePolygons(layer)) return;
+                     const Fields fields = reader.fieldsOf(*layer.GetLayerDefn());
+                     if (!fields.mayHaveParts()) return;
+                     const GdalErrorScope quiet;
+                     std::string filter;
+                     if (fields.part >= 0)
+                         filter = std::string("\"") +
+                                  layer.GetLayerDefn()->GetFieldDefn(fields.part)->GetNameRef() +
+                                  "\" IS NOT NULL";
+                     if (fields.tags >= 0)
+                         filter +=
+                             std::string(filter.empty() ? "" : " OR ") + "other_tags LIKE '%building:part%'";
+                     layer.SetAttributeFilter(filter.c_str());
+                     forEachFeature(
+                         layer, target, options.buildings,
+                         [&](const OGRFeature& feature, const OGRGeometry& geometry,
+                             OGRCoordinateTransformation& toGrid)
+                         { reader.lookForParts(feature, geometry, toGrid, fields); },
+                         LongLines::KEPT);
+                     layer.SetAttributeFilter(nullptr);
+                 });
+    reader.finishParts();
+    forEachLayer(*dataset, options.layer, options.buildings,
+                 [&](OGRLayer& layer)
+                 {
+                     if (!mayHavePolygons(layer)) return;
                      any = true;
                      const Fields fields = reader.fieldsOf(*layer.GetLayerDefn());
                      const GIntBig known = layer.GetFeatureCount(TRUE);

@@ -22,7 +22,7 @@ constexpr std::size_t BUFFER = 1 << 20;
 /// What a building starts with.
 struct Head
 {
-    double height = 0.0;
+    double height = 0.0, bottom = 0.0;
     std::uint32_t bytes = 0; ///< of all that follows
     std::uint16_t rings = 0;
     std::uint8_t use = 0, notes = 0; ///< the highest bit of the notes: gabled
@@ -53,6 +53,7 @@ std::uint64_t BuildingSpool::add(const Building& building)
     }
     Head head;
     head.height = building.height;
+    head.bottom = building.bottom;
     head.bytes = static_cast<std::uint32_t>(body.bytes().size());
     head.rings = static_cast<std::uint16_t>(building.rings.size());
     head.use = static_cast<std::uint8_t>(building.use);
@@ -106,6 +107,7 @@ Building BuildingSpool::read(std::uint64_t place) const
     take(body.data(), body.size(), place + sizeof(head));
     Building building;
     building.height = head.height;
+    building.bottom = head.bottom;
     building.use = static_cast<BuildingUse>(head.use);
     building.gabled = (head.notes & 128) != 0;
     building.notes = static_cast<std::uint8_t>(head.notes & 127);

@@ -187,7 +187,8 @@ PlacedBuilding TownCells::place(const Building& building, const Standing& standi
         result.area += ringArea(local);
         result.rings.push_back(std::move(local));
     }
-    result.foot = result.reference.z() + standing.lowest - standing.base;
+    result.raised = building.bottom > 0.0;
+    result.foot = result.reference.z() + standing.lowest - standing.base + building.bottom;
     result.top = result.reference.z() + standing.top - standing.base;
     result.use = building.use;
     result.gabled = building.gabled;
@@ -345,7 +346,7 @@ void TownCells::build(int worker, std::size_t index)
             const PlacedBuilding simple = simplified(placed, 1.0);
             single.add(simple, BuildingLevel::SINGLE, number);
             ++number;
-            if (!_ambientOcclusion) continue;
+            if (!_ambientOcclusion || placed.raised) continue;
             nearShade.add(placed);
             farShade.add(simple);
         }
