@@ -31,14 +31,15 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// Which fields of a layer tell what.
 struct Fields
 {
-    FeatureTags name, importance, height, style;
+    FeatureTags name, importance, height, style, altitudeMode;
 
     Fields(const OGRFeatureDefn& layer, const NameVectors::Options& options, const std::string& file)
         : name(tagsOf(layer, file, options.name, {"name", "label", "title"})),
           importance(tagsOf(layer, file, options.importance, {"importance", "rank_score", "prominence"})),
           height(tagsOf(layer, file, options.height, {"ele", "elevation", "height"})),
-          style(
-              tagsOf(layer, file, options.style, {"style", "natural", "place", "water", "waterway", "class"}))
+          style(tagsOf(layer, file, options.style,
+                       {"style", "natural", "place", "water", "waterway", "class"})),
+          altitudeMode(layer, {"altitudeMode"})
     {
     }
 
@@ -69,6 +70,14 @@ double heightOf(const std::string& text)
     if (const auto metres = Lengths::read(text); metres && std::isfinite(*metres)) return *metres;
     // Words that are no unit, such as "müM".
     return numberOf(text).value_or(unknown);
+}
+
+/// Whether a point's third number is its height above the sea. In KML it is so in one mode alone; elsewhere it counts from the ground, or is
+/// nothing. But heights that others have put there are known by not being 0.
+bool isHeight(double z, const std::string& altitudeMode)
+{
+    return altitudeMode == "absolute" ||
+           (z != 0.0 && (altitudeMode.empty() || altitudeMode == "clampToGround"));
 }
 
 /// The middle of an area along its longer axis, with places where the area is at its widest: the means of slices across the axis.
@@ -215,7 +224,7 @@ private:
 };
 
 void collect(OGRLayer& layer, const NameVectors::Options& options, const OGRSpatialReference& target,
-             double metresPerUnit, bool globe, const std::string& file, std::vector<MapName>& names,
+             double metresPerUnit, bool globe, bool kml, const std::string& file, std::vector<MapName>& names,
              std::set<std::string>& others)
 {
     const Fields fields(*layer.GetLayerDefn(), options, file);
@@ -241,6 +250,7 @@ void collect(OGRLayer& layer, const NameVectors::Options& options, const OGRSpat
             const double height = heightOf(fields.height.of(feature));
             for (osg::Vec3d& place : shapes.points)
             {
+                if (kml && !isHeight(place.z(), fields.altitudeMode.of(feature))) place.z() = unknown;
                 if (!std::isnan(height)) place.z() = height;
                 name.places = {place};
                 names.push_back(name);
@@ -259,10 +269,13 @@ void readAll(const std::string& file, const NameVectors::Options& options, const
     const DatasetPtr dataset = openVectors(file);
     std::vector<MapName> found;
     std::set<std::string> others; // fields of text in layers without names
-    forEachLayer(
-        *dataset, options.layer, file,
-        [&](OGRLayer& layer)
-        { collect(layer, options, target.crs, target.metresPerUnit, frame.globe, file, found, others); });
+    const std::string format = dataset->GetDriver() ? dataset->GetDriver()->GetDescription() : "";
+    const bool kml = format == "LIBKML" || format == "KML";
+    forEachLayer(*dataset, options.layer, file,
+                 [&](OGRLayer& layer) {
+                     collect(layer, options, target.crs, target.metresPerUnit, frame.globe, kml, file, found,
+                             others);
+                 });
     if (found.empty() && !others.empty())
     {
         std::string list;

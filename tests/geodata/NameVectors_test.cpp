@@ -286,3 +286,30 @@ TEST_F(NameVectorsTest, FaultsAreSentencesWithTheRemedy)
     options.layer = "lakes";
     EXPECT_NE(faultOf(file, options).find("no layer \"lakes\""), std::string::npos);
 }
+
+// In KML a third number counts in one mode alone; the usual one has 0 there, which is no height.
+TEST_F(NameVectorsTest, PointsOfKmlOnTheGroundHaveNoHeight)
+{
+    const std::pair<const char*, double> points[] = {
+        {"<coordinates>7.66,45.98,0</coordinates>", std::nan("")},
+        {"<altitudeMode>clampToGround</altitudeMode><coordinates>7.66,45.98,0</coordinates>", std::nan("")},
+        {"<altitudeMode>relativeToGround</altitudeMode><coordinates>7.66,45.98,30</coordinates>",
+         std::nan("")},
+        {"<altitudeMode>absolute</altitudeMode><coordinates>7.66,45.98,0</coordinates>", 0.0},
+        {"<altitudeMode>absolute</altitudeMode><coordinates>7.66,45.98,2014</coordinates>", 2014.0},
+        {"<coordinates>7.66,45.98,4478</coordinates>", 4478.0},
+        {"<coordinates>7.66,45.98</coordinates>", std::nan("")}};
+    for (const auto& [text, height] : points)
+    {
+        const std::vector<MapName> names = readAll(
+            write("names.kml",
+                  "<kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document><Placemark><name>A</name><Point>" +
+                      std::string(text) + "</Point></Placemark></Document></kml>"));
+        ASSERT_EQ(names.size(), 1u) << text;
+        EXPECT_EQ(std::isnan(names[0].places[0].z()), std::isnan(height)) << text;
+        if (!std::isnan(height))
+        {
+            EXPECT_EQ(names[0].places[0].z(), height) << text;
+        }
+    }
+}
