@@ -20,6 +20,7 @@
 #include <osgGeoFX/batch/FolderLock.h>
 #include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/batch/OwnFolder.h>
+#include <osgGeoFX/batch/PathText.h>
 #include <osgGeoFX/batch/PlannedWork.h>
 #include <osgGeoFX/batch/WholeFile.h>
 #include <osgGeoFX/batch/WorkError.h>

@@ -3,9 +3,9 @@
 #include <osgGeoFX/geodata/detail/UndeclaredVoids.h>
 
 #include <osgGeoFX/geodata/detail/Lengths.h>
+#include <osgGeoFX/geodata/detail/RasterFile.h>
 #include <osgGeoFX/geodata/detail/RasterMask.h>
 #include <osgGeoFX/geodata/detail/Remarks.h>
-#include <osgGeoFX/paging/ReadingFile.h>
 
 #include <algorithm>
 #include <cmath>
@@ -293,10 +293,10 @@ UndeclaredVoids UndeclaredVoids::of(const std::string& file)
 {
     initialiseGdal();
     UndeclaredVoids result;
-    const ReadingFile reading(file);
     const GdalErrorScope quiet;
-    const DatasetPtr raster(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
-    if (!raster || raster->GetRasterCount() == 0 || !faultOfBlocks(*raster).empty()) return result;
+    const DatasetChain chain = RasterFile::open(file);
+    GDALDataset* const raster = &chain.top();
+    if (!faultOfBlocks(*raster).empty()) return result;
     GDALRasterBand& band = *raster->GetRasterBand(1);
     if (GDALDataTypeIsComplex(band.GetRasterDataType())) return result;
     const OGRSpatialReference* const srs = raster->GetSpatialRef();
