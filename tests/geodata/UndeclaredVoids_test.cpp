@@ -85,7 +85,7 @@ TEST_F(UndeclaredVoidsTest, SeveralSuchValuesAreFound)
 
 TEST_F(UndeclaredVoidsTest, TheUnitCounts)
 {
-    // A cliff of 450 m, or of 450 feet; and a gap of 600 m in decimetres.
+    // A cliff of 400 m, of 1,400 and 1,900 feet, and of 4,500 decimetres.
     const auto cliff = [](double low)
     {
         return [low](int c, int r)
@@ -93,10 +93,10 @@ TEST_F(UndeclaredVoidsTest, TheUnitCounts)
             return c < 20 ? low : 0.1 * relief(c, r);
         };
     };
-    EXPECT_TRUE(look(write(100, 80, cliff(-450.0))).isEmpty());
-    EXPECT_TRUE(look(write(100, 80, cliff(-1600.0), "ft")).isEmpty());
-    EXPECT_FALSE(look(write(100, 80, cliff(-1700.0), "ft")).isEmpty());
-    EXPECT_TRUE(look(write(100, 80, cliff(-4900.0), "dm")).isEmpty());
+    EXPECT_TRUE(look(write(100, 80, cliff(-400.0))).isEmpty());
+    EXPECT_TRUE(look(write(100, 80, cliff(-1400.0), "ft")).isEmpty());
+    EXPECT_FALSE(look(write(100, 80, cliff(-1900.0), "ft")).isEmpty());
+    EXPECT_TRUE(look(write(100, 80, cliff(-4500.0), "dm")).isEmpty());
 }
 
 TEST_F(UndeclaredVoidsTest, ADeepSeaHasHeights)

@@ -7,6 +7,8 @@
 #include <osgGeoFX/geodata/detail/RasterMask.h>
 #include <osgGeoFX/geodata/detail/Remarks.h>
 
+#include <osg/BoundingBox>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -21,15 +23,13 @@ namespace osgGeoFX
 namespace
 {
 
-// So many pixels are looked at.
-constexpr double MOST_PIXELS = 8e6;
 // A value that is no height is so far from all heights, metres.
 constexpr double LEAST_GAP = 500.0;
 // Fewer other pixels show nothing.
 constexpr std::uint64_t LEAST_PIXELS = 256;
 // So many values at each end of all are known: several kinds of missing heights, and the first true one.
 constexpr std::size_t ENDS = 6;
-// Along a quadrilateral's side, pixels; and how far the raster's corners lie beyond it.
+// Along a quadrilateral's side, pixels; and how far the corners of the box around it lie beyond it.
 constexpr double LEAST_SIDE = 16.0, LEAST_CORNER = 2.5;
 // A quadrilateral is so full of data, and the data's hull fills so much of it.
 constexpr double FULL = 0.97;
@@ -112,26 +112,26 @@ struct UndeclaredVoids::Look
     }
 
     /// False where the raster cannot be read.
-    bool read()
+    bool read(double most)
     {
         if (!readCorners()) return false;
         int width = 0, height = 0;
         band.GetBlockSize(&width, &height);
         const int across = (columns - 1) / width + 1, down = (rows - 1) / height + 1;
         // Every n-th block in both directions, or of rows.
-        const double share = static_cast<double>(columns) * rows / MOST_PIXELS;
+        const double share = static_cast<double>(columns) * rows / most;
         const double step = std::max(1.0, across > 1 ? std::sqrt(share) : share);
-        const auto next = [&](int& index, int count)
+        const auto chosen = [&](int count)
         {
+            std::vector<int> result;
+            for (double at = 0.0; at < count - 1.0; at += step)
+                result.push_back(static_cast<int>(at));
             // The last one, too.
-            if (index == count - 1)
-                ++index;
-            else
-                index = std::min(static_cast<int>(std::floor((std::floor(index / step) + 1.0) * step)),
-                                 count - 1);
+            result.push_back(count - 1);
+            return result;
         };
-        for (int y = 0; y < down; next(y, down))
-            for (int x = 0; x<across; across> 1 ? next(x, across) : void(++x))
+        for (const int y : chosen(down))
+            for (const int x : chosen(across))
                 if (!readBlock(x * width, y * height, std::min(width, columns - x * width),
                                std::min(height, rows - y * height)))
                     return false;
@@ -289,7 +289,7 @@ double UndeclaredVoids::depthIn(const Quadrilateral& area, const osg::Vec2d& pla
     return least;
 }
 
-UndeclaredVoids UndeclaredVoids::of(const std::string& file)
+UndeclaredVoids UndeclaredVoids::of(const std::string& file, double most)
 {
     initialiseGdal();
     UndeclaredVoids result;
@@ -303,7 +303,7 @@ UndeclaredVoids UndeclaredVoids::of(const std::string& file)
     const double metres =
         std::abs(band.GetScale()) * Lengths::metresPerHeight(band, srs ? *srs : OGRSpatialReference(), file);
     Look look(*raster);
-    if (!(metres > 0.0) || !look.read()) return result;
+    if (!(metres > 0.0) || !look.read(most)) return result;
 
     // One end after the other, as long as its value is far from the rest.
     auto &lowest = look.lowest, &highest = look.highest;
@@ -346,9 +346,13 @@ UndeclaredVoids UndeclaredVoids::of(const std::string& file)
                     points.emplace_back(x, y);
         }
         const auto inside = quadrilateralAround(std::move(points));
+        // A box along the grid may be ground that stands in the sea.
+        osg::BoundingBoxd box;
+        for (std::size_t i = 0; inside && i < 4; ++i)
+            box.expandBy(osg::Vec3d((*inside)[i], 0.0));
         bool turned = inside.has_value();
-        for (const double x : {0.0, static_cast<double>(look.columns)})
-            for (const double y : {0.0, static_cast<double>(look.rows)})
+        for (const double x : {box.xMin(), box.xMax()})
+            for (const double y : {box.yMin(), box.yMax()})
                 turned = turned && depthIn(*inside, osg::Vec2d(x, y)) < -LEAST_CORNER;
         if (turned)
         {

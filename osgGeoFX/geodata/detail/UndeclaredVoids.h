@@ -27,10 +27,10 @@ class UndeclaredVoids
 public:
     /// None.
     UndeclaredVoids() = default;
-    /** Looks at the first band of an elevation raster: at all of its pixels up to eight million, else at as many, in blocks all
+    /** Looks at the first band of an elevation raster: at all of its pixels up to `most`, else at about as many, in blocks all
         over it. A warning for each file states the kinds found, once. Nothing is found in a raster that cannot be opened or
         read. Any thread may call it. */
-    static UndeclaredVoids of(const std::string& file);
+    static UndeclaredVoids of(const std::string& file, double most = 8e6);
 
     bool isEmpty() const { return _values.empty() && !_around; }
     /// Whether a pixel of the band is no height; `value`: that of the file, before scale, offset and unit.

@@ -226,9 +226,12 @@ void BuildPlan::lookAtHeights(const std::vector<double>& units)
         return unit == units.front();
     };
     const bool alike = std::all_of(units.begin(), units.end(), isFirst);
+    // Each process of many looks, so thousands of files must not be read as a whole.
+    const double most = std::min(8e6, 32e6 / static_cast<double>(units.size()));
     for (std::size_t i = 0; i < units.size(); ++i)
     {
-        demVoids.push_back(options.allHeights ? UndeclaredVoids() : UndeclaredVoids::of(options.dems[i]));
+        demVoids.push_back(options.allHeights ? UndeclaredVoids()
+                                              : UndeclaredVoids::of(options.dems[i], most));
         if (i > 0 && alike) continue;
         heightUnits += (i > 0 ? ", that of " : "the unit of ") +
                        (alike && units.size() > 1 ? "all files" : options.dems[i]) + " is taken as " +
