@@ -249,8 +249,8 @@ std::optional<double> numberOf(const std::string& text)
 
 std::string ShapePaint::key() const
 {
-    return (fill ? textOf(*fill) : "-") + textOf(stroke) + (metres ? "m" : "p") + std::to_string(leastScale) +
-           "," + std::to_string(mostScale);
+    return (fill ? textOf(*fill) : "-") + textOf(stroke) + (pattern ? pattern->key() : "-") +
+           (metres ? "m" : "p") + std::to_string(leastScale) + "," + std::to_string(mostScale);
 }
 
 std::string SymbolPaint::key() const
@@ -258,7 +258,8 @@ std::string SymbolPaint::key() const
     return picture + "|" + mark + "|" + (fill ? textOf(*fill) : "-") + textOf(stroke) + "|" +
            std::to_string(size) + "," + std::to_string(rotation) + "," + std::to_string(opacity) + "," +
            std::to_string(anchor.x()) + "," + std::to_string(anchor.y()) + "," + std::to_string(offset.x()) +
-           "," + std::to_string(offset.y()) + (metres ? "m" : "p");
+           "," + std::to_string(offset.y()) + "," + std::to_string(gap.x()) + "," + std::to_string(gap.y()) +
+           (metres ? "m" : "p");
 }
 
 std::optional<std::string> StyleExpression::value(const OGRFeature& feature) const
@@ -371,6 +372,7 @@ ShapePaint FeatureStyle::shapeOf(const Symbolizer& symbolizer, const StyleRule& 
     ShapePaint paint;
     paint.metres = symbolizer.metresPerUnit > 0.0;
     paint.fill = values.fill(symbolizer.fill);
+    if (symbolizer.hasPattern) paint.pattern = symbolOf(symbolizer, feature);
     paint.stroke = values.stroke(symbolizer.stroke, unit);
     if (paint.stroke && paint.stroke->width == 0.0) paint.stroke.reset();
     paint.leastScale = rule.leastScale;
@@ -397,6 +399,7 @@ SymbolPaint FeatureStyle::symbolOf(const Symbolizer& symbolizer, const OGRFeatur
     paint.opacity = values.number(graphic.opacity, 1.0, 0.0, 1.0, "the opacity");
     paint.anchor = graphic.anchor;
     paint.offset = graphic.offset * unit;
+    paint.gap = graphic.gap * unit;
     return paint;
 }
 

@@ -39,24 +39,11 @@ struct StrokePaint
     double dashOffset = 0.0;
 };
 
-/// How an area or a line is drawn.
-struct ShapePaint
-{
-    std::optional<osg::Vec4> fill;
-    std::optional<StrokePaint> stroke;
-    bool metres = false; ///< lengths are metres
-    /// Of scales 1:N, in which it shows; from `leastScale`, below `mostScale`.
-    double leastScale = 0.0, mostScale = std::numeric_limits<double>::infinity();
-
-    /// The same text for what looks the same.
-    std::string key() const;
-};
-
 /// How a point is drawn.
 struct SymbolPaint
 {
     std::string picture;         ///< a file, as GDAL opens it; empty: a mark
-    std::string mark = "square"; ///< square, circle, triangle, star, cross, x
+    std::string mark = "square"; ///< of MarkShapes
     std::optional<osg::Vec4> fill;
     std::optional<StrokePaint> stroke;
     double size = 0.0;     ///< its height; 0: the picture's own
@@ -64,8 +51,29 @@ struct SymbolPaint
     double opacity = 1.0;
     osg::Vec2d anchor = {0.5, 0.5}; ///< what of the symbol lies at the place, 0…1 from its lower left corner
     osg::Vec2d offset;              ///< to the right and up
+    osg::Vec2d gap;                 ///< between the marks of a pattern
     bool metres = false;
 
+    std::string key() const;
+};
+
+/// How an area or a line is drawn.
+struct ShapePaint
+{
+    std::optional<osg::Vec4> fill;
+    std::optional<SymbolPaint> pattern; ///< of an area: marks side by side, as lines where they are such
+    std::optional<StrokePaint> stroke;
+    bool metres = false; ///< lengths are metres
+    /// Of scales 1:N, in which it shows; from `leastScale`, below `mostScale`.
+    double leastScale = 0.0, mostScale = std::numeric_limits<double>::infinity();
+
+    bool fills() const { return fill || pattern; }
+    void keepStroke()
+    {
+        fill.reset();
+        pattern.reset();
+    }
+    /// The same text for what looks the same.
     std::string key() const;
 };
 
@@ -139,7 +147,8 @@ struct GraphicStyle
     std::optional<FillStyle> fill;
     std::optional<StrokeStyle> stroke;
     std::optional<StyleExpression> size, rotation, opacity;
-    osg::Vec2d anchor = {0.5, 0.5}, offset;
+    osg::Vec2d anchor = {0.5, 0.5}, offset, gap;
+    double dense = 0.0; ///< of QGIS's brushes of dots: the share that they cover; else 0
 };
 
 struct Symbolizer
@@ -154,6 +163,7 @@ struct Symbolizer
     std::optional<FillStyle> fill;
     std::optional<StrokeStyle> stroke;
     GraphicStyle graphic;
+    bool hasPattern = false;    ///< of an area, which the graphic fills
     double metresPerUnit = 0.0; ///< of lengths; 0: they are pixels
 };
 

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/detail/FrameRaster.h>
+#include <osgGeoFX/geodata/detail/MarkShapes.h>
 #include <osgGeoFX/geodata/detail/RingCut.h>
 
 #include <cairo.h>
@@ -25,6 +26,8 @@ constexpr double miterLimit = 4.0;
 constexpr double nearest = 0.2;
 /// Cairo's numbers end at ±8 million, so what is farther away is cut off, texels.
 constexpr double margin = 16.0;
+/// Marks of patterns that are nearer to each other become an even tint, texels.
+constexpr double leastStep = 2.0;
 
 struct SurfaceFreer
 {
@@ -157,8 +160,10 @@ public:
         std::vector<Line> parts;
         for (const Line& part : shape.parts)
             parts.push_back(inTexels(part));
+        const double unit = paint.metres ? scale : _texelsOfPixel;
         if (fills && !addTiny(shape, *paint.fill)) fill(parts, *paint.fill);
-        if (paint.stroke) stroke(parts, shape.area, *paint.stroke, paint.metres ? scale : _texelsOfPixel);
+        if (paint.pattern && shape.area) fillWith(*paint.pattern, parts, unit);
+        if (paint.stroke) stroke(parts, shape.area, *paint.stroke, unit);
     }
 
     osg::ref_ptr<osg::Image> finish()
@@ -272,6 +277,12 @@ private:
     void fill(const std::vector<Line>& parts, const osg::Vec4& color) const
     {
         setColor(_context.get(), color);
+        addRings(parts);
+        cairo_fill(_context.get());
+    }
+
+    void addRings(const std::vector<Line>& parts) const
+    {
         for (const Line& part : parts)
         {
             const Line ring = ringWithin(part, low(margin), high(margin));
@@ -279,7 +290,126 @@ private:
             add(ring);
             cairo_close_path(_context.get());
         }
-        cairo_fill(_context.get());
+    }
+
+    /// A pattern that is the same in all tiles of a magnification. `scale`: texels in one of its units.
+    void fillWith(const SymbolPaint& pattern, const std::vector<Line>& parts, double scale) const
+    {
+        cairo_t* const context = _context.get();
+        cairo_save(context);
+        addRings(parts);
+        cairo_clip(context);
+        cairo_set_fill_rule(context, CAIRO_FILL_RULE_WINDING);
+        Window window;
+        cairo_clip_extents(context, &window.low.x(), &window.low.y(), &window.high.x(), &window.high.y());
+        const std::vector<double> hatches = MarkShapes::hatches(pattern.mark);
+        if (window.low.x() < window.high.x() && window.low.y() < window.high.y() && pattern.size > 0.0)
+        {
+            for (const double direction : hatches)
+                hatch(pattern, window, direction, scale);
+            if (hatches.empty()) repeat(pattern, window, scale);
+        }
+        cairo_restore(context);
+    }
+
+    struct Window
+    {
+        osg::Vec2d low, high; ///< texels
+    };
+
+    /// The frame's origin, texels.
+    osg::Vec2d origin() const { return osg::Vec2d(-_low.x() * _scale.x(), _rows + _low.y() * _scale.y()); }
+
+    void hatch(const SymbolPaint& pattern, const Window& window, double direction, double scale) const
+    {
+        if (!pattern.stroke) return;
+        const double angle = osg::DegreesToRadians(direction - pattern.rotation);
+        const osg::Vec2d along(std::cos(angle), -std::sin(angle)), across(-along.y(), along.x());
+        // Diagonals of squares are nearer to each other than their sides.
+        const double diagonal = std::abs(direction) == 45.0 ? std::sqrt(0.5) : 1.0;
+        const double step = (pattern.size + pattern.gap.y()) * scale * diagonal;
+        const double width = pattern.stroke->width * scale;
+        osg::Vec4 color = pattern.stroke->color;
+        color.a() *= static_cast<float>(pattern.opacity);
+        if (step < leastStep)
+        {
+            color.a() *= static_cast<float>(std::min(1.0, width / step));
+            return tint(color);
+        }
+        const osg::Vec2d middle = (window.low + window.high) / 2.0;
+        const double reach = (window.high - window.low).length() / 2.0 + width;
+        const double place = (middle - origin()) * across;
+        setStroke(_context.get(), *pattern.stroke, scale);
+        setColor(_context.get(), color);
+        std::vector<double> dashes;
+        for (const double dash : pattern.stroke->dashes)
+            dashes.push_back(dash * scale);
+        double period = 0.0;
+        for (const double dash : dashes)
+            period += dash;
+        // Each line begins at the same place.
+        const double start = pattern.stroke->dashOffset * scale + (middle - origin()) * along - reach;
+        if (period >= leastStep)
+            cairo_set_dash(_context.get(), dashes.data(), static_cast<int>(dashes.size()),
+                           start - std::floor(start / (2.0 * period)) * 2.0 * period);
+        for (double at = std::ceil((place - reach) / step) * step; at <= place + reach; at += step)
+            add({middle + across * (at - place) - along * reach,
+                 middle + across * (at - place) + along * reach});
+        cairo_stroke(_context.get());
+        cairo_set_dash(_context.get(), nullptr, 0, 0.0);
+    }
+
+    void repeat(const SymbolPaint& pattern, const Window& window, double scale) const
+    {
+        cairo_t* const context = _context.get();
+        const osg::Vec2d step = (osg::Vec2d(pattern.size, pattern.size) + pattern.gap) * scale;
+        const auto faded = [&](osg::Vec4 color, double share)
+        {
+            color.a() *= static_cast<float>(pattern.opacity * share);
+            return color;
+        };
+        if (std::min(step.x(), step.y()) < leastStep)
+        {
+            const double share = pattern.size * scale / step.x() * pattern.size * scale / step.y();
+            if (pattern.fill) tint(faded(*pattern.fill, share));
+            return;
+        }
+        const osg::Vec2d start = origin();
+        const auto first = [](double from, double low, double by)
+        {
+            return from + std::floor((low - from) / by) * by;
+        };
+        for (double y = first(start.y(), window.low.y(), step.y()); y < window.high.y() + step.y();
+             y += step.y())
+            for (double x = first(start.x(), window.low.x(), step.x()); x < window.high.x() + step.x();
+                 x += step.x())
+            {
+                cairo_save(context);
+                cairo_translate(context, x, y);
+                cairo_rotate(context, osg::DegreesToRadians(pattern.rotation));
+                cairo_scale(context, pattern.size * scale, pattern.size * scale);
+                MarkShapes::add(context, pattern.mark);
+                cairo_restore(context);
+                if (pattern.fill)
+                {
+                    setColor(context, faded(*pattern.fill, 1.0));
+                    cairo_fill_preserve(context);
+                }
+                if (pattern.stroke)
+                {
+                    setStroke(context, *pattern.stroke, scale);
+                    setColor(context, faded(pattern.stroke->color, 1.0));
+                    cairo_stroke_preserve(context);
+                }
+                cairo_new_path(context);
+            }
+    }
+
+    /// All of the area that is clipped to.
+    void tint(const osg::Vec4& color) const
+    {
+        setColor(_context.get(), color);
+        cairo_paint(_context.get());
     }
 
     void stroke(const std::vector<Line>& parts, bool closed, const StrokePaint& paint, double scale) const
@@ -357,51 +487,6 @@ double ShapePainter::reachOf(const ShapePaint& paint, double texel)
 
 namespace
 {
-
-/// A closed path of a mark, one unit high about the origin, y downwards.
-void addMark(cairo_t* context, const std::string& mark)
-{
-    const auto polygon = [&](const std::vector<osg::Vec2d>& corners)
-    {
-        for (const osg::Vec2d& corner : corners)
-            cairo_line_to(context, corner.x(), corner.y());
-        cairo_close_path(context);
-    };
-    constexpr double arm = 0.125;
-    if (mark == "circle")
-        cairo_arc(context, 0.0, 0.0, 0.5, 0.0, 2.0 * osg::PI);
-    else if (mark == "triangle")
-        polygon({{0.0, -0.5}, {0.5, 0.5}, {-0.5, 0.5}});
-    else if (mark == "star")
-    {
-        std::vector<osg::Vec2d> corners;
-        for (int i = 0; i < 10; ++i)
-        {
-            const double radius = i % 2 == 0 ? 0.5 : 0.191, angle = i * osg::PI / 5.0;
-            corners.emplace_back(radius * std::sin(angle), -radius * std::cos(angle));
-        }
-        polygon(corners);
-    }
-    else if (mark == "cross" || mark == "x")
-    {
-        if (mark == "x") cairo_rotate(context, osg::PI_4);
-        polygon({{-arm, -0.5},
-                 {arm, -0.5},
-                 {arm, -arm},
-                 {0.5, -arm},
-                 {0.5, arm},
-                 {arm, arm},
-                 {arm, 0.5},
-                 {-arm, 0.5},
-                 {-arm, arm},
-                 {-0.5, arm},
-                 {-0.5, -arm},
-                 {-arm, -arm}});
-        if (mark == "x") cairo_rotate(context, -osg::PI_4);
-    }
-    else
-        polygon({{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}});
-}
 
 /// A picture of a file, premultiplied.
 Surface readPicture(const std::string& picture, const std::string& file, bool anyFormat)
@@ -486,7 +571,7 @@ osg::ref_ptr<osg::Image> ShapePainter::symbol(const SymbolPaint& paint, const st
     {
         cairo_save(context.get());
         cairo_scale(context.get(), width, height);
-        addMark(context.get(), paint.mark);
+        MarkShapes::add(context.get(), paint.mark);
         cairo_restore(context.get());
         if (paint.fill)
         {

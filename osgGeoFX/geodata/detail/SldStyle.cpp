@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/detail/KmlFolder.h>
+#include <osgGeoFX/geodata/detail/MarkShapes.h>
 #include <osgGeoFX/geodata/detail/SldDocument.h>
 
 #include <libxml/tree.h>
@@ -12,6 +13,7 @@
 #include <cctype>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -190,7 +192,7 @@ private:
         if (name == "PolygonSymbolizer" || name == "LineSymbolizer")
         {
             symbolizer.kind = name == "LineSymbolizer" ? Symbolizer::LINE : Symbolizer::AREA;
-            if (xmlNode* const fill = childOf(node, "Fill")) symbolizer.fill = fillOf(fill);
+            if (xmlNode* const fill = childOf(node, "Fill")) readFill(fill, node, symbolizer);
             if (xmlNode* const stroke = childOf(node, "Stroke")) symbolizer.stroke = strokeOf(stroke);
             if (name == "LineSymbolizer" && !symbolizer.stroke) symbolizer.stroke = StrokeStyle();
             if (xmlNode* const offset = childOf(node, "PerpendicularOffset")) leaveOut(offset);
@@ -216,9 +218,70 @@ private:
         {
             if (isNamed(child, "CssParameter") || isNamed(child, "SvgParameter"))
                 take(attributeOf(child, "name"), child);
-            else if (isNamed(child, "GraphicFill") || isNamed(child, "GraphicStroke"))
+            else if (isNamed(child, "GraphicStroke"))
                 leaveOut(child);
         }
+    }
+
+    /// Of an area: a color, or a mark that is repeated.
+    void readFill(xmlNode* node, xmlNode* area, Symbolizer& symbolizer)
+    {
+        xmlNode* const graphic = childOf(childOf(node, "GraphicFill"), "Graphic");
+        if (!graphic)
+        {
+            symbolizer.fill = fillOf(node);
+            return;
+        }
+        if (childOf(graphic, "ExternalGraphic"))
+            _notices.insert(
+                _style.file +
+                ": a picture that fills areas is left out, which mappings do not draw; the next mark "
+                "is, or nothing. Fill them with a color or a mark.");
+        if (!childOf(graphic, "Mark")) return;
+        GraphicStyle& style = symbolizer.graphic;
+        readGraphic(graphic, style, false);
+        if (style.dense > 0.0)
+        {
+            symbolizer.fill = style.fill;
+            symbolizer.fill->opacity = product(style.fill->opacity, style.dense);
+            return;
+        }
+        style.gap = gapOf(area);
+        symbolizer.hasPattern = true;
+    }
+
+    /// GeoServer's margins around each mark, which QGIS writes, too.
+    osg::Vec2d gapOf(xmlNode* area) const
+    {
+        for (xmlNode* const option : elementsOf(area))
+        {
+            if (!isNamed(option, "VendorOption") || attributeOf(option, "name") != "graphic-margin") continue;
+            std::istringstream words(textOf(option));
+            std::vector<double> margins;
+            for (std::string word; words >> word;)
+            {
+                const std::optional<double> margin = numberOf(word);
+                if (!margin || *margin < 0.0 || *margin > 1e4)
+                    fail(option, "the margins are \"" + textOf(option).substr(0, 40) +
+                                     "\"; write one, two or four numbers.");
+                margins.push_back(*margin);
+            }
+            if (margins.size() == 1) return osg::Vec2d(2.0 * margins[0], 2.0 * margins[0]);
+            if (margins.size() == 2) return osg::Vec2d(2.0 * margins[1], 2.0 * margins[0]);
+            if (margins.size() == 4) return osg::Vec2d(margins[1] + margins[3], margins[0] + margins[2]);
+        }
+        return {};
+    }
+
+    static StyleExpression product(const std::optional<StyleExpression>& value, double factor)
+    {
+        StyleExpression text, result;
+        text.text = std::to_string(factor);
+        if (!value) return text;
+        result.kind = StyleExpression::MULTIPLY;
+        result.line = value->line;
+        result.parts = {*value, text};
+        return result;
     }
 
     FillStyle fillOf(xmlNode* node)
@@ -275,14 +338,14 @@ private:
     }
 
     /// The first mark or picture that can be drawn; false if there is none.
-    bool readGraphic(xmlNode* node, GraphicStyle& graphic)
+    bool readGraphic(xmlNode* node, GraphicStyle& graphic, bool withPictures = true)
     {
         bool found = false;
         if (!node) return false;
         for (xmlNode* const child : elementsOf(node))
         {
             if (isNamed(child, "ExternalGraphic") && !found)
-                found = readPicture(child, graphic);
+                found = withPictures && readPicture(child, graphic);
             else if (isNamed(child, "Mark") && !found)
                 found = readMark(child, graphic);
             else if (isNamed(child, "Opacity"))
@@ -308,17 +371,13 @@ private:
 
     bool readMark(xmlNode* node, GraphicStyle& graphic)
     {
-        static const std::set<std::string> known = {"square", "circle", "triangle", "star", "cross", "x"};
         xmlNode* const name = childOf(node, "WellKnownName");
-        std::string mark = name ? textOf(name) : "square";
-        if (mark == "cross_fill") mark = "cross";
-        if (mark == "cross2") mark = "x";
-        if (known.count(mark) == 0)
-        {
+        const std::string mark = name ? textOf(name) : "square";
+        const std::optional<std::string> known = MarkShapes::named(mark);
+        graphic.dense = denseOf(mark);
+        if (!known && graphic.dense == 0.0)
             _notices.insert(_style.file + ": the mark \"" + mark.substr(0, 40) + "\" is drawn as a square.");
-            mark = "square";
-        }
-        graphic.mark = mark;
+        graphic.mark = known.value_or("square");
         if (xmlNode* const fill = childOf(node, "Fill")) graphic.fill = fillOf(fill);
         if (xmlNode* const stroke = childOf(node, "Stroke")) graphic.stroke = strokeOf(stroke);
         // The standard's own look of a mark that says nothing.
@@ -327,7 +386,29 @@ private:
             graphic.fill = FillStyle();
             graphic.stroke = StrokeStyle();
         }
+        // QGIS gives lines a fill alone.
+        if (MarkShapes::isLine(graphic.mark) && graphic.fill)
+        {
+            if (!graphic.stroke)
+            {
+                graphic.stroke = StrokeStyle();
+                graphic.stroke->color = graphic.fill->color;
+                graphic.stroke->opacity = graphic.fill->opacity;
+            }
+            graphic.fill.reset();
+        }
+        if (graphic.dense > 0.0 && !graphic.fill) graphic.fill = FillStyle();
         return true;
+    }
+
+    /// The share that QGIS's brushes of dots cover; 0 for other marks.
+    static double denseOf(const std::string& mark)
+    {
+        static const std::string brush = "brush://dense";
+        constexpr double shares[] = {0.94, 0.88, 0.63, 0.5, 0.37, 0.12, 0.06};
+        if (mark.size() != brush.size() + 1 || mark.compare(0, brush.size(), brush) != 0) return 0.0;
+        const int number = mark.back() - '1';
+        return number >= 0 && number < static_cast<int>(std::size(shares)) ? shares[number] : 0.0;
     }
 
     bool readPicture(xmlNode* node, GraphicStyle& graphic)
@@ -335,7 +416,16 @@ private:
         xmlNode* const resource = childOf(node, "OnlineResource");
         const std::string href = resource ? attributeOf(resource, "href") : "";
         if (href.empty()) return false;
-        std::string extension = std::filesystem::path(href).extension().string();
+        // QGIS writes pictures that are in its styles, and colors behind the names of others.
+        if (href.rfind("base64:", 0) == 0 || href.rfind("data:", 0) == 0)
+        {
+            _notices.insert(
+                _style.file +
+                ": a picture within the style is not drawn; the next mark is, or a square. Save it as "
+                "PNG beside the style.");
+            return false;
+        }
+        std::string extension = std::filesystem::path(href.substr(0, href.find('?'))).extension().string();
         std::transform(extension.begin(), extension.end(), extension.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         if (extension == ".svg")

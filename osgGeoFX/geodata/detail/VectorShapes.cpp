@@ -198,14 +198,14 @@ private:
     /// `areas`: areas are filled; else only their borders are drawn.
     void addShapes(const OGRGeometry& geometry, const ShapePaint& paint, bool areas)
     {
-        if (!paint.fill && !paint.stroke) return;
+        if (!paint.fills() && !paint.stroke) return;
         if (!_shape) _shape = shapesOf(geometry);
         for (const Found& each : *_shape)
         {
             const bool isArea = _result.shapes[each.shape].area;
             // An area's symbolizer closes lines nowhere, but draws them.
             ShapePaint own = paint;
-            if (!isArea || !areas) own.fill.reset();
+            if (!isArea || !areas) own.keepStroke();
             if (!isArea)
             {
                 if (own.stroke) add(each.shape, own);
@@ -213,13 +213,13 @@ private:
             }
             if (!own.stroke || each.outlines.empty())
             {
-                if (own.fill || own.stroke) add(each.shape, own);
+                if (own.fills() || own.stroke) add(each.shape, own);
                 continue;
             }
             ShapePaint fill = own;
             fill.stroke.reset();
-            if (fill.fill) add(each.shape, fill);
-            own.fill.reset();
+            if (fill.fills()) add(each.shape, fill);
+            own.keepStroke();
             for (const std::uint32_t outline : each.outlines)
                 add(outline, own);
         }
