@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_build: rasters to a paged terrain database, and buildings into it.
+#include <osgGeoFX/raster/RasterBands.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <osgGeoFX/terrain/DistributedBuild.h>
 #include <osgGeoFX/terrain/ProgressLine.h>
@@ -69,7 +70,7 @@ int main(int argc, char** argv)
 {
     osgGeoFX::BuildOptions options;
     osgGeoFX::TownOptions town;
-    std::string plan, workFolder;
+    std::string plan, workFolder, stretch;
     std::vector<std::string> units;
     bool geocentric = false, quiet = false, estimate = false, anew = false, keepNothing = false;
     std::string srs;
@@ -84,6 +85,11 @@ int main(int argc, char** argv)
         ->type_name("FILE…");
     app.add_option("--imagery", options.imagery, "Color rasters for the surface; the later one wins")
         ->type_name("FILE…");
+    app.add_option(
+           "--stretch", stretch,
+           "The numbers of the imagery that become black and white (default: bytes stay as they are; of "
+           "larger numbers 2 to 98 % are shown, or the whole range where they fill half of it)")
+        ->type_name("LOW,HIGH");
     app.add_option("--landcover,--land-cover", options.landCover,
                    "Raster of land-cover classes, one byte for each pixel")
         ->type_name("FILE");
@@ -238,6 +244,17 @@ int main(int argc, char** argv)
                 throw osgGeoFX::BuildError("--srs " + srs +
                                            ": write it as EPSG: and a number, such as EPSG:32604.");
             options.epsg = std::stoi(number);
+        }
+        if (!stretch.empty())
+        {
+            osgGeoFX::RasterBands bands;
+            if (!bands.setRange(stretch))
+                throw osgGeoFX::BuildError("--stretch: \"" + stretch +
+                                           "\" is not LOW,HIGH; write two different numbers with a comma "
+                                           "between them.");
+            if (options.imagery.empty())
+                throw osgGeoFX::BuildError("--stretch is for imagery; give some with --imagery.");
+            options.stretch = bands.channels[0].range;
         }
         if (!workFolder.empty())
         {

@@ -67,6 +67,8 @@ void describe(osg::ApplicationUsage& usage)
                              "FOLDER.");
     usage.addCommandLineOption("--colors <file>",
                                "The colors of values: a table of gdaldem color-relief, GMT or SLD.");
+    usage.addCommandLineOption("--stretch <low,high>",
+                               "The numbers of pictures on the ground that become black and white.");
     usage.addCommandLineOption(
         "--route <file>",
         "Put a way onto the ground: GPX, KML, KMZ or lines of any vector file; FILE or FILE:LAYER.");
@@ -154,6 +156,7 @@ int main(int argc, char** argv)
         mappingOptions.sequences.push_back(text);
     arguments.read("--mapping-style", mappingOptions.style);
     arguments.read("--colors", mappingOptions.colors);
+    arguments.read("--stretch", mappingOptions.stretch);
     while (arguments.read("--route", text))
         mappingOptions.routes.push_back(text);
     const bool routeWidthGiven = arguments.read("--route-width", mappingOptions.routeWidth);

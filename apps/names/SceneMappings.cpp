@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 
@@ -57,10 +58,30 @@ void addOptions(CLI::App& app, Options& options)
                    "color-relief, GMT (.cpt) or "
                    "SLD (default: greys)")
         ->type_name("FILE");
+    app.add_option(
+           "--stretch", options.stretch,
+           "Of pictures with more than 8 bits that --mapping and --sequence show, and of others where it is "
+           "given: the numbers that become black and white (default: 2 to 98 % of them, or the whole range "
+           "where they fill half of it)")
+        ->type_name("LOW,HIGH");
 }
 
 namespace
 {
+
+/// Of --stretch.
+std::optional<osgGeoFX::RasterBands> bandsOf(const Options& options)
+{
+    if (options.stretch.empty()) return std::nullopt;
+    if (options.files.empty() && options.sequences.empty())
+        throw std::runtime_error("--stretch is for pictures; give some with --mapping or --sequence.");
+    osgGeoFX::RasterBands bands;
+    if (!bands.setRange(options.stretch))
+        throw std::runtime_error(
+            "--stretch: \"" + options.stretch +
+            "\" is not LOW,HIGH; write two different numbers with a comma between them.");
+    return bands;
+}
 
 void showRoutes(Options& options, osgGeoFX::Scene& scene)
 {
@@ -87,11 +108,13 @@ void showRasters(Options& options, bool allowOutside, osgGeoFX::Scene& scene,
         throw std::runtime_error("--colors is for values; give some with --mapping or --sequence.");
     if (options.files.empty() && !options.style.empty())
         throw std::runtime_error("--mapping-style is for vector data; give some with --mapping.");
+    bandsOf(options);
     if (options.files.empty()) return;
     osgGeoFX::SceneOverlays overlays(*scene.node, *scene.effects);
     osgGeoFX::SceneOverlays::Options how;
     how.allowOutside = allowOutside;
     how.colors = options.colors;
+    how.bands = bandsOf(options);
     how.paged = options.paged;
     std::string error;
     how.style = options.style;
@@ -110,6 +133,7 @@ void showSequences(const Options& options, osgGeoFX::Scene& scene)
     osgGeoFX::SceneSequences sequences(*scene.node, *scene.effects);
     osgGeoFX::SceneSequences::Options how;
     how.colors = options.colors;
+    how.bands = bandsOf(options);
     std::string error;
     for (const std::string& file : options.sequences)
         if (!sequences.add(file, how, error)) throw std::runtime_error("--sequence: " + error);
@@ -155,6 +179,7 @@ std::string agesOf(const Options& options)
     for (const std::string& file : options.linked)
         ages += "; " + file + names::ageOf(file);
     if (options.routeWidth > 0.0) ages += " " + std::to_string(options.routeWidth);
+    if (!options.stretch.empty()) ages += "; stretched " + options.stretch;
     if (!options.style.empty()) ages += "; " + options.style + names::ageOf(options.style);
     return ages + (options.colors.empty() ? "" : "; " + options.colors + names::ageOf(options.colors));
 }

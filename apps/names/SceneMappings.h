@@ -13,7 +13,7 @@ namespace CLI
 class App;
 }
 
-/// The rasters and ways that the programs' options put onto the ground: --mapping, --sequence, --colors, --route and --route-width.
+/// The rasters and ways that the programs' options put onto the ground: --mapping, --sequence, --colors, --stretch, --route and --route-width.
 namespace geofx::mappings
 {
 
@@ -25,6 +25,8 @@ struct Options
     std::vector<std::string> routes;    ///< GPX, KML or other vector data with lines, or FILE:LAYER
     double routeWidth = 0.0;            ///< metres; 0: by their extent
     std::string colors;                 ///< a color table's file, for values; empty: greys
+    std::string
+        stretch; ///< "LOW,HIGH": the numbers of pictures that are black and white; empty: by their numbers
     std::string style; ///< an SLD file, for vector data; empty: the one beside each file, or its own look
     std::vector<std::string> linked; ///< what show() has read of KML files, with what they link
 };

@@ -22,7 +22,7 @@ MappingRaster readRaster(const std::string& file, const MappingFrame& frame,
                          const MappingRaster::Options& options)
 {
     const FrameCrs crs = crsOf(frame, file);
-    const FrameRaster whole(file, options.kind);
+    const FrameRaster whole(file, options.kind, true, FrameRaster::ANY_FORMAT, -1, options.bands);
     FrameRaster::Extent extent;
     if (const std::optional<MappingRaster::Window>& window = options.window)
         extent = {crs.fromFrame(window->low), crs.fromFrame(window->high), window->texel / crs.metresPerUnit};
@@ -37,7 +37,8 @@ MappingRaster readRaster(const std::string& file, const MappingFrame& frame,
     // With fewer texels than all of it has, an overview is enough.
     const int overview = whole.overviewFor(texel / extent.texel);
     std::optional<FrameRaster> coarse;
-    if (overview >= 0) coarse.emplace(file, options.kind, true, FrameRaster::ANY_FORMAT, overview);
+    if (overview >= 0)
+        coarse.emplace(file, options.kind, true, FrameRaster::ANY_FORMAT, overview, whole.bands);
     const FrameRaster& raster = coarse ? *coarse : whole;
 
     MappingRaster result;
@@ -79,7 +80,7 @@ bool MappingRaster::moveToMiddle(const std::string& file, MappingFrame& frame, s
     initialiseGdal();
     try
     {
-        FrameRaster(file, std::nullopt).moveToMiddle(frame);
+        FrameRaster(file, DataLayer::VALUE).moveToMiddle(frame);
         return true;
     }
     catch (const BuildError& failure)

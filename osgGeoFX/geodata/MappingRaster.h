@@ -5,6 +5,7 @@
 #include <osgGeoFX/Export.h>
 #include <osgGeoFX/effect/LocalOrigin.h>
 #include <osgGeoFX/mapping/ProjectiveMapping.h>
+#include <osgGeoFX/raster/RasterBands.h>
 
 #include <osg/Vec2d>
 
@@ -27,8 +28,9 @@ struct MappingFrame
     frame.
 
     It accepts any raster that GDAL opens: any coordinate system on Earth, rotated geotransforms or ground control
-    points, no-data, masks, palettes, scale and offset. A palette, or three or more bands, become colors with alpha.
-    Otherwise the first band becomes values, with NaN where there is no data. It reads only as much as it needs,
+    points, no-data, masks, palettes, scale and offset. A palette, bands of red, green and blue, or three or more bands of bytes or of
+    unsigned numbers with 16 bits become colors with alpha. Otherwise the first band becomes values, with NaN where there is no data. Of colors
+    with more than 8 bits, 2 to 98 % of the numbers go from black to white, unless they fill half of their type's range already. It reads only as much as it needs,
     from overviews if the file has any.
 
     Thread-safe: several threads may read files at once.
@@ -47,6 +49,7 @@ struct OSGGEOFXDATA_EXPORT MappingRaster
         std::optional<DataLayer::Kind> kind;         ///< empty: the file decides
         int maxSide = 2048;                          ///< texels along the longer side at most, 1…16384
         std::optional<Window> window = std::nullopt; ///< empty: all of the raster
+        RasterBands bands = {};                      ///< what is shown
     };
 
     osg::ref_ptr<DataLayer> layer;

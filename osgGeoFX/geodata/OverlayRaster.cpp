@@ -247,9 +247,9 @@ public:
         : _overlay(overlay), _options(options), _quad(overlay.corners), _name(nameOf(overlay))
     {
         if (!overlay.image.empty())
-            _raster = std::make_unique<FrameRaster>(overlay.image, DataLayer::COLOR, false,
-                                                    options.anyFormat ? FrameRaster::ANY_FORMAT
-                                                                      : FrameRaster::PLAIN_PICTURES);
+            _raster = std::make_unique<FrameRaster>(
+                overlay.image, DataLayer::COLOR, false,
+                options.anyFormat ? FrameRaster::ANY_FORMAT : FrameRaster::PLAIN_PICTURES, -1, options.bands);
     }
 
     GroundReach reach() const
@@ -512,7 +512,7 @@ std::optional<GroundReach> OverlayRaster::reachOf(const std::string& file, std::
     initialiseGdal();
     try
     {
-        return osgGeoFX::reachOf(FrameRaster(file, std::nullopt));
+        return osgGeoFX::reachOf(FrameRaster(file, DataLayer::VALUE));
     }
     catch (const BuildError& failure)
     {

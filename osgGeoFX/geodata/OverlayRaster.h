@@ -48,6 +48,7 @@ struct OSGGEOFXDATA_EXPORT OverlayRaster
         /// Those that were read before, which are not read again; grows. Where a picture stays as it is, its overlays share the layer.
         /// Null: none are kept.
         Pictures* pictures = nullptr;
+        RasterBands bands = {}; ///< what pictures show
     };
 
     osg::ref_ptr<DataLayer> layer;

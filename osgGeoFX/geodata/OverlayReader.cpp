@@ -52,7 +52,7 @@ class Work
 public:
     Work(const std::string& file, const OverlayReader::Options& options, const OverlayReader& reader)
         : _file(file), _raster(file), _options(options), _globe(reader.globe), _wkt(reader.wkt),
-          frames(reader.frames)
+          frames(reader.frames), _bands(options.bands)
     {
     }
 
@@ -177,6 +177,7 @@ private:
         if (!KmlOverlays::read(_file, _options.allowOutside, found, notices, error, &files, &isNone))
             throw BuildError(error);
         OverlayRaster::Options options{_options.maxSide, _options.allowOutside};
+        options.bands = _options.bands.value_or(RasterBands());
         OverlayRaster::Pictures shared;
         std::map<std::string, std::size_t> uses;
         for (const KmlOverlay& each : found)
@@ -285,10 +286,35 @@ private:
         return frames.size() - 1;
     }
 
+    /// What an SLD file says of the bands.
+    void readSld()
+    {
+        if (_options.colors.empty() || !SldColors::isSld(_options.colors)) return;
+        std::string error;
+        const std::optional<SldColors> all = SldColors::readAll(_options.colors, error);
+        if (!all) throw BuildError(error);
+        _sld = *all;
+        if (!_sld.hasBands) return;
+        if (!_sld.table)
+            _kind = DataLayer::COLOR;
+        else
+            _kind = _sld.table->getMode() == ColorTable::EXACT ? DataLayer::CLASS : DataLayer::VALUE;
+        if (!_bands) _bands = RasterBands();
+        for (std::size_t i = 0; i < _bands->channels.size(); ++i)
+        {
+            RasterBands::Channel& channel = _bands->channels[i];
+            const RasterBands::Channel& other = _sld.bands.channels[i];
+            if (channel.band == 0) channel.band = other.band;
+            if (!channel.range) channel.range = other.range;
+        }
+    }
+
     void readRaster()
     {
+        readSld();
         std::string error;
         GroundOverlay overlay;
+        if (!_sld.table) overlay.opacity = _sld.opacity;
         overlay.name = std::filesystem::path(_raster).filename().string();
         GroundReach reach;
         if (_globe)
@@ -306,7 +332,7 @@ private:
         const std::size_t before = overlays.size();
         const auto take = [&](const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
         {
-            MappingRaster::Options options{std::nullopt, _options.maxSide, window};
+            MappingRaster::Options options{_kind, _options.maxSide, window, _bands.value_or(RasterBands())};
             // Faces lie over each other by two texels, which a coarse raster would show.
             constexpr int leastSide = 1024;
             if (window)
@@ -324,6 +350,7 @@ private:
         };
         addParts(reach, _raster, overlay, take);
         giveColors(before);
+        notices.insert(notices.end(), _sld.notices.begin(), _sld.notices.end());
     }
 
     void readVectors()
@@ -432,7 +459,7 @@ private:
     {
         constexpr int coarse = 512;
         std::string error;
-        osg::ref_ptr<RasterTiles> tiles = TiledRaster::open(_raster, frame, std::nullopt, error);
+        osg::ref_ptr<RasterTiles> tiles = TiledRaster::open(_raster, frame, _kind, error, _bands);
         if (!tiles)
         {
             // What cannot be read at all says so below.
@@ -460,8 +487,8 @@ private:
         std::string error;
         if (!_options.colors.empty())
         {
-            table = SldColors::isSld(_options.colors)
-                        ? SldColors::read(_options.colors, error)
+            table = _sld.table
+                        ? _sld.table
                         : ColorRampFile::read(_options.colors, ColorRampFile::Range(lowest, highest), error);
             if (!table) throw BuildError(error);
         }
@@ -472,6 +499,11 @@ private:
             overlays[i].table = table;
         }
     }
+
+    // Of a raster.
+    SldColors _sld;
+    std::optional<RasterBands> _bands;
+    std::optional<DataLayer::Kind> _kind;
 
     double _texels = 0.0;
     std::set<const DataLayer*> _counted;                                               ///< in these

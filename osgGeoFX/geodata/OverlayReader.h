@@ -6,7 +6,9 @@
 #include <osgGeoFX/effect/LocalOrigin.h>
 #include <osgGeoFX/geodata/OverlayRaster.h>
 #include <osgGeoFX/mapping/GroundOverlay.h>
+#include <osgGeoFX/raster/RasterBands.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,8 @@ public:
         bool allowOutside = false; ///< KmlOverlays' reach
         /// Colors of values: an SLD file (SldColors), or one that ColorRampFile reads. Empty: none.
         std::string colors;
+        /// Of rasters and pictures: what is shown. What is left open, an SLD file of `colors` decides, then the raster itself.
+        std::optional<RasterBands> bands = std::nullopt;
         int maxSide = 2048; ///< texels along the longer side of a raster, 1…16384
         /// Whether a raster with a georeference that has more pixels than `maxSide` along a side gives its tiles, too
         /// (GroundOverlay::tiles); its layer is a coarse picture then.

@@ -43,7 +43,8 @@ public:
                                             frame.origin,
                                             options.maxSide,
                                             std::nullopt,
-                                            std::nullopt},
+                                            std::nullopt,
+                                            options.bands},
           _isFace(face), _isPolar(std::abs(frame.origin.latitude) > 1.0)
     {
         const std::unique_ptr<FrameRaster> first = _steps->step(0);
@@ -188,7 +189,8 @@ std::optional<SequenceRaster> SequenceRaster::open(const std::string& file, Mapp
     initialiseGdal();
     try
     {
-        std::unique_ptr<TimeSteps> source = TimeSteps::open(file, options.variable);
+        const RasterBands bands = options.bands.value_or(RasterBands());
+        std::unique_ptr<TimeSteps> source = TimeSteps::open(file, options.variable, bands);
         MappingFrame moved = frame;
         std::optional<MappingRaster::Window> face;
         if (frame.globe)
@@ -211,7 +213,7 @@ std::optional<SequenceRaster> SequenceRaster::open(const std::string& file, Mapp
         for (std::size_t i = 0; i < origins.size(); ++i)
         {
             const LocalOrigin& origin = origins[i];
-            if (!source) source = TimeSteps::open(file, options.variable);
+            if (!source) source = TimeSteps::open(file, options.variable, bands);
             MappingFrame own = moved;
             own.origin = origin;
             const osg::ref_ptr<Steps> steps = new Steps(std::move(source), own, file, options, face);

@@ -30,6 +30,8 @@ struct OSGGEOFXDATA_EXPORT SequenceRaster
         /// among levels, members and other dimensions, by their values: "t[level=500,number=2]".
         std::string variable;
         int maxSide = 1024; ///< texels along the longer side at most, 1…16384
+        /// Of a folder of pictures: what is shown. All are as bright as the first.
+        std::optional<RasterBands> bands = std::nullopt;
     };
 
     osg::ref_ptr<SequenceSteps> steps;

@@ -16,7 +16,9 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -34,6 +36,28 @@ xmlNode* findElement(xmlNode* node, const char* name)
         if (xmlNode* const below = findElement(node->children, name)) return below;
     }
     return nullptr;
+}
+
+std::string nameOf(const xmlNode* node)
+{
+    return reinterpret_cast<const char*>(node->name);
+}
+
+std::vector<xmlNode*> elementsOf(const xmlNode* node)
+{
+    std::vector<xmlNode*> result;
+    for (xmlNode* child = node->children; child; child = child->next)
+        if (child->type == XML_ELEMENT_NODE) result.push_back(child);
+    return result;
+}
+
+std::string textOf(xmlNode* node)
+{
+    xmlChar* const content = xmlNodeGetContent(node);
+    const std::string text = content ? reinterpret_cast<const char*>(content) : "";
+    xmlFree(content);
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
 std::optional<std::string> attribute(xmlNode* node, const char* name)
@@ -61,17 +85,35 @@ class Reader
 public:
     explicit Reader(const std::string& file) : _file(file) {}
 
-    osg::ref_ptr<ColorTable> read()
+    SldColors read()
     {
         const SldDocument document = readSldDocument(_file, "the color map");
-        xmlNode* const map = findElement(xmlDocGetRootElement(document.get()), "ColorMap");
-        if (!map)
+        xmlNode* const root = xmlDocGetRootElement(document.get());
+        xmlNode* const map = findElement(root, "ColorMap");
+        xmlNode* const symbolizer = findElement(root, "RasterSymbolizer");
+        if (symbolizer) readSymbolizer(symbolizer);
+        if (!map && !_result.hasBands)
             throw BuildError(_file + ": it has no ColorMap; export the style of a raster layer as SLD.");
+        if (map)
+        {
+            _result.table = tableOf(map);
+            _result.opacity = 1.0;
+        }
+        _result.notices.assign(_notices.begin(), _notices.end());
+        return std::move(_result);
+    }
+
+private:
+    [[noreturn]] void fail(xmlNode* node, const std::string& sentence) const
+    {
+        throw BuildError(_file + ":" + std::to_string(xmlGetLineNo(node)) + ": " + sentence);
+    }
+
+    osg::ref_ptr<ColorTable> tableOf(xmlNode* map)
+    {
         const std::string type = attribute(map, "type").value_or("ramp");
-        for (xmlNode* entry = map->children; entry; entry = entry->next)
-            if (entry->type == XML_ELEMENT_NODE &&
-                std::strcmp(reinterpret_cast<const char*>(entry->name), "ColorMapEntry") == 0)
-                take(entry);
+        for (xmlNode* const entry : elementsOf(map))
+            if (nameOf(entry) == "ColorMapEntry") take(entry);
         if (_stops.empty()) fail(map, "the ColorMap has no ColorMapEntry; give it one or more.");
         // QGIS's last interval. Only intervals have a color below their quantity.
         const bool isOpen = std::isinf(_stops.back().value);
@@ -98,10 +140,110 @@ public:
         return table;
     }
 
-private:
-    [[noreturn]] void fail(xmlNode* node, const std::string& sentence) const
+    void readSymbolizer(xmlNode* symbolizer)
     {
-        throw BuildError(_file + ":" + std::to_string(xmlGetLineNo(node)) + ": " + sentence);
+        for (xmlNode* const child : elementsOf(symbolizer))
+        {
+            const std::string name = nameOf(child);
+            if (name == "Opacity")
+            {
+                const std::string text = textOf(child);
+                const std::optional<double> opacity = number(text);
+                if (!opacity || *opacity < 0.0 || *opacity > 1.0)
+                    fail(child, "the opacity is \"" + text.substr(0, 40) + "\"; write a number from 0 to 1.");
+                _result.opacity = *opacity;
+            }
+            else if (name == "ChannelSelection")
+                readChannels(child);
+            else if (name == "ContrastEnhancement")
+                readEnhancement(child, _result.bands.channels);
+            else if (name == "ShadedRelief" || name == "ImageOutline" || name == "OverlapBehavior")
+                leaveOut(name);
+            else if (name == "VendorOption") // QGIS's saturation, brightness and contrast
+                leaveOut(attribute(child, "name").value_or(name).substr(0, 40));
+        }
+    }
+
+    void readChannels(xmlNode* selection)
+    {
+        std::array<RasterBands::Channel, 3>& channels = _result.bands.channels;
+        for (xmlNode* const child : elementsOf(selection))
+        {
+            const std::string name = nameOf(child);
+            RasterBands::Channel channel;
+            std::array<RasterBands::Channel, 3> read;
+            for (xmlNode* const part : elementsOf(child))
+            {
+                if (nameOf(part) == "SourceChannelName")
+                    channel.band = bandOf(part);
+                else if (nameOf(part) == "ContrastEnhancement")
+                    readEnhancement(part, read);
+            }
+            channel.range = read[0].range;
+            if (name == "GrayChannel")
+                channels = {channel, channel, channel};
+            else if (name == "RedChannel")
+                channels[0] = channel;
+            else if (name == "GreenChannel")
+                channels[1] = channel;
+            else if (name == "BlueChannel")
+                channels[2] = channel;
+            else
+                continue;
+            _result.hasBands = true;
+        }
+    }
+
+    int bandOf(xmlNode* node) const
+    {
+        const std::string text = textOf(node);
+        const std::optional<double> band = number(text);
+        if (!band || *band < 1.0 || *band > 65535.0 || *band != std::floor(*band))
+            fail(node,
+                 "the channel is \"" + text.substr(0, 40) + "\"; write the number of a band, from 1 on.");
+        return static_cast<int>(*band);
+    }
+
+    /// Sets the range of the channels where it is told.
+    void readEnhancement(xmlNode* node, std::array<RasterBands::Channel, 3>& channels)
+    {
+        for (xmlNode* const child : elementsOf(node))
+        {
+            const std::string name = nameOf(child);
+            if (name == "GammaValue" && number(textOf(child)) == 1.0) continue;
+            // Without numbers it is what is done anyway.
+            if (name == "Normalize")
+                readRange(child, channels);
+            else
+                leaveOut(name);
+        }
+    }
+
+    void readRange(xmlNode* node, std::array<RasterBands::Channel, 3>& channels)
+    {
+        std::optional<double> low, high;
+        for (xmlNode* const option : elementsOf(node))
+        {
+            const std::string name = attribute(option, "name").value_or(""), text = textOf(option);
+            if (name == "algorithm" && text != "StretchToMinimumMaximum")
+                leaveOut(text.substr(0, 40));
+            else if (name == "minValue" || name == "maxValue")
+            {
+                const std::optional<double> value = number(text);
+                if (!value)
+                    fail(option, "the " + name + " is \"" + text.substr(0, 40) + "\"; write a number.");
+                (name == "minValue" ? low : high) = value;
+            }
+        }
+        if (!low || !high || *low == *high) return;
+        for (RasterBands::Channel& channel : channels)
+            channel.range = {*low, *high};
+        _result.hasBands = true;
+    }
+
+    void leaveOut(const std::string& name)
+    {
+        _notices.insert(_file + ": " + name + " of its RasterSymbolizer is left out.");
     }
 
     void take(xmlNode* entry)
@@ -127,7 +269,8 @@ private:
         if (!isHex) fail(entry, "the entry's color is \"" + color.substr(0, 40) + "\"; write #rrggbb.");
         for (std::size_t i = 0; i < 3; ++i)
             rgb[i] = static_cast<float>(std::stoi(color.substr(1 + 2 * i, 2), nullptr, 16)) / 255.0f;
-        _stops.push_back({*value, osg::Vec4(rgb[0], rgb[1], rgb[2], static_cast<float>(*alpha))});
+        _stops.push_back(
+            {*value, osg::Vec4(rgb[0], rgb[1], rgb[2], static_cast<float>(*alpha * _result.opacity))});
     }
 
     /// Colors that hold below their quantities become ones that hold from the quantity before on.
@@ -144,12 +287,14 @@ private:
     }
 
     const std::string& _file;
+    SldColors _result;
+    std::set<std::string> _notices;
     ColorTable::Stops _stops;
 };
 
 } // namespace
 
-osg::ref_ptr<ColorTable> SldColors::read(const std::string& file, std::string& error)
+std::optional<SldColors> SldColors::readAll(const std::string& file, std::string& error)
 {
     try
     {
@@ -158,8 +303,16 @@ osg::ref_ptr<ColorTable> SldColors::read(const std::string& file, std::string& e
     catch (const BuildError& failure)
     {
         error = failure.what();
-        return nullptr;
+        return std::nullopt;
     }
+}
+
+osg::ref_ptr<ColorTable> SldColors::read(const std::string& file, std::string& error)
+{
+    const std::optional<SldColors> all = readAll(file, error);
+    if (!all) return nullptr;
+    if (!all->table) error = file + ": it has no ColorMap; export the style of a layer with one band as SLD.";
+    return all->table;
 }
 
 bool SldColors::isSld(const std::string& file)

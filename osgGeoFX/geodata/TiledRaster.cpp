@@ -26,12 +26,14 @@ namespace
 class Tiles final : public RasterTiles
 {
 public:
-    Tiles(std::string file, const MappingFrame& frame, std::optional<DataLayer::Kind> wanted)
+    Tiles(std::string file, const MappingFrame& frame, std::optional<DataLayer::Kind> wanted,
+          const std::optional<RasterBands>& bands)
         : _cache(GdalCacheLimit::small()), _file(std::move(file)), _frame(frame), _crs(crsOf(frame, _file)),
-          _wanted(wanted)
+          _wanted(wanted), _wantedBands(bands), _bands(bands.value_or(RasterBands()))
     {
-        auto raster = std::make_unique<FrameRaster>(_file, _wanted);
+        std::unique_ptr<FrameRaster> raster = open(itself);
         raster->checkOverviews();
+        _bands = raster->bands;
         _kind = raster->kind;
         if (const std::optional<double> texel = texelAroundGlobe())
         {
@@ -52,6 +54,7 @@ public:
     {
         LayerSource source = sourceOf(_file, _frame);
         if (_wanted) source.kind = *_wanted;
+        source.bands = _wantedBands;
         return source;
     }
 
@@ -116,7 +119,12 @@ private:
                 return raster;
             }
         }
-        return std::make_unique<FrameRaster>(_file, _wanted, true, FrameRaster::ANY_FORMAT, overview);
+        return open(overview);
+    }
+
+    std::unique_ptr<FrameRaster> open(int overview) const
+    {
+        return std::make_unique<FrameRaster>(_file, _wanted, true, FrameRaster::ANY_FORMAT, overview, _bands);
     }
 
     void give(int overview, std::unique_ptr<FrameRaster> raster)
@@ -131,6 +139,8 @@ private:
     const MappingFrame _frame;
     const FrameCrs _crs;
     const std::optional<DataLayer::Kind> _wanted;
+    const std::optional<RasterBands> _wantedBands;
+    RasterBands _bands; ///< with all that the file and its numbers have decided
     DataLayer::Kind _kind = DataLayer::COLOR;
     FrameRaster::Extent _extent;
     bool _isFace = false; ///< of a raster around the globe
@@ -141,12 +151,13 @@ private:
 } // namespace
 
 osg::ref_ptr<RasterTiles> TiledRaster::open(const std::string& file, const MappingFrame& frame,
-                                            std::optional<DataLayer::Kind> kind, std::string& error)
+                                            std::optional<DataLayer::Kind> kind, std::string& error,
+                                            const std::optional<RasterBands>& bands)
 {
     initialiseGdal();
     try
     {
-        return new Tiles(file, frame, kind);
+        return new Tiles(file, frame, kind, bands);
     }
     catch (const BuildError& failure)
     {

@@ -22,8 +22,10 @@ namespace osgGeoFX
 struct OSGGEOFXDATA_EXPORT TiledRaster
 {
     /// Null, with a sentence in `error` that names file and remedy, if the file cannot be used. `kind`: empty if the file decides.
+    /// `bands`: what is shown.
     static osg::ref_ptr<RasterTiles> open(const std::string& file, const MappingFrame& frame,
-                                          std::optional<DataLayer::Kind> kind, std::string& error);
+                                          std::optional<DataLayer::Kind> kind, std::string& error,
+                                          const std::optional<RasterBands>& bands = std::nullopt);
 };
 
 } // namespace osgGeoFX

@@ -6,6 +6,7 @@
 #include <osgGeoFX/effect/LocalOrigin.h>
 #include <osgGeoFX/mapping/GroundOverlay.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,11 @@ struct OSGGEOFXMAPS_EXPORT OverlayFile
     bool allowOutside = false; ///< whether a KML file may name files outside of its folder, and addresses
     std::string colors;        ///< of values: an SLD file, or one that ColorRampFile reads; empty: none
     std::string layer, style;  ///< of vector data: one layer, and an SLD file; either may be empty
-    int maxSide = 2048;        ///< texels along the longer side of a raster, 1…16384
-    bool paged = false;        ///< OverlayReader::Options::paged
-    bool globe = true;         ///< the terrain is one
-    std::string wkt;           ///< the coordinate system of a projected terrain
+    std::optional<RasterBands> bands;    ///< OverlayReader::Options::bands
+    int maxSide = 2048;                  ///< texels along the longer side of a raster, 1…16384
+    bool paged = false;                  ///< OverlayReader::Options::paged
+    bool globe = true;                   ///< the terrain is one
+    std::string wkt;                     ///< the coordinate system of a projected terrain
     std::vector<LocalOrigin> frames;     ///< those that there are; grows
     std::vector<GroundOverlay> overlays; ///< what was read, the lowest first
     std::vector<std::string> notices;    ///< sentences that people should know

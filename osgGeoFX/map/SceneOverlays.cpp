@@ -52,6 +52,7 @@ bool SceneOverlays::add(const std::string& file, const Options& options, std::ve
     request.colors = options.colors;
     request.layer = options.layer;
     request.style = options.style;
+    request.bands = options.bands;
     request.maxSide = options.maxSide;
     request.paged = options.paged;
     request.globe = _scene->ground().ellipsoid.valid();

@@ -9,6 +9,7 @@
 
 #include <osg/Node>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,8 @@ public:
         std::string layer; ///< of vector data: one layer; empty: all, and the file may be a raster
         std::string
             style; ///< of vector data: an SLD file; empty: the one beside the file, the features' own, or plain colors
+        std::optional<RasterBands>
+            bands;          ///< of rasters: what is shown; nothing: the file and its numbers decide
         int maxSide = 2048; ///< texels along the longer side of a raster, 1…16384
         /// Whether a raster with more pixels than that, and a georeference, is read in tiles as it is needed (PagedRaster).
         bool paged = false;

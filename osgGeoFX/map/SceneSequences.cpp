@@ -45,6 +45,7 @@ bool SceneSequences::add(const std::string& file, const Options& options, std::s
     request.file = file;
     request.colors = options.colors;
     request.maxSide = options.maxSide;
+    request.bands = options.bands;
     request.globe = _scene->ground().ellipsoid.valid();
     request.wkt = _wkt;
     if (!request.read(error)) return false;

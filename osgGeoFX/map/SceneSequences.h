@@ -38,8 +38,9 @@ public:
     {
         std::string
             colors; ///< of values: an SLD file, or one that ColorRampFile reads; empty: viridis over their range
-        double opacity = 1.0; ///< 0…1
-        int maxSide = 1024;   ///< texels along the longer side, 1…16384
+        double opacity = 1.0;                            ///< 0…1
+        int maxSide = 1024;                              ///< texels along the longer side, 1…16384
+        std::optional<RasterBands> bands = std::nullopt; ///< of a folder of pictures: what is shown
     };
     /// Adds a file, "FILE" or "FILE:VARIABLE", or a folder. False, with a sentence in `error`, if it cannot; the scene stays as it is then.
     bool add(const std::string& file, const Options& options, std::string& error);

@@ -9,6 +9,7 @@
 
 #include <osg/Vec2d>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,10 +24,11 @@ struct OSGGEOFXMAPS_EXPORT SequenceFile
     std::string file;   ///< "FILE", "FILE:VARIABLE" or a folder
     std::string colors; ///< of values: an SLD file, or one that ColorRampFile reads; empty: none
     int maxSide = 1024; ///< texels along the longer side, 1…16384
-    bool globe = true;  ///< the terrain is one
-    std::string wkt;    ///< the coordinate system of a projected terrain
-    bool moves = true;  ///< whether the origin is moved to the middle of the rasters
-    LocalOrigin origin; ///< of the frame
+    std::optional<RasterBands> bands; ///< of a folder of pictures: what is shown
+    bool globe = true;                ///< the terrain is one
+    std::string wkt;                  ///< the coordinate system of a projected terrain
+    bool moves = true;                ///< whether the origin is moved to the middle of the rasters
+    LocalOrigin origin;               ///< of the frame
 
     osg::ref_ptr<SequenceSteps> steps;
     osg::Vec2d low, high; ///< the rectangle's corners in the frame, metres

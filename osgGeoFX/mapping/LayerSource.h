@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/effect/LocalOrigin.h>
+#include <osgGeoFX/raster/RasterBands.h>
 
 #include <optional>
 #include <string>
@@ -28,7 +29,8 @@ struct LayerSource
         std::string layer, style;
         bool allowOutside = false;
     };
-    std::optional<Vectors> vectors; ///< nothing for rasters
+    std::optional<Vectors> vectors;   ///< nothing for rasters
+    std::optional<RasterBands> bands; ///< of rasters: what is shown; nothing if the file decides
 };
 
 } // namespace osgGeoFX

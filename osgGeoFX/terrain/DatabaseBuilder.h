@@ -10,6 +10,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGeoFX
@@ -45,10 +46,14 @@ struct BuildOptions
     /// extent. The quadtree is as deep as the densest source that touches a tile asks for, in blocks of up to 8 × 8
     /// tiles.
     std::vector<std::string> dems;
-    std::vector<std::string> imagery; ///< color rasters (RGB, RGBA, grey or palette); the later one wins
-    std::string landCover;            ///< class raster, one byte band; empty for none
-    std::string landCoverTable;       ///< the meaning of its values, for readLandCoverTable()
-    std::string treeCover;            ///< raster of the share under trees, percent; empty for none
+    /// Color rasters (red, green and blue, with or without alpha and further bands, grey or palette); the later one wins.
+    std::vector<std::string> imagery;
+    /// The numbers of the imagery that become black and white, with any number of bits. Nothing: bytes stay as they are; of larger
+    /// numbers 2 to 98 % go from black to white, for each file, unless they fill half of their type's range already.
+    std::optional<std::pair<double, double>> stretch;
+    std::string landCover;      ///< class raster, one byte band; empty for none
+    std::string landCoverTable; ///< the meaning of its values, for readLandCoverTable()
+    std::string treeCover;      ///< raster of the share under trees, percent; empty for none
     /// Takes all values of elevation rasters as heights. Else those that plainly are none count as missing, though their file
     /// does not declare them: a single value far from all others, one that is all around turned data, and heights beyond −12,000 and
     /// 9,500 m. A warning states the first two.

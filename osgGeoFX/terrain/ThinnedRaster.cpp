@@ -38,7 +38,7 @@ constexpr double lakeArea = 2e5;
 DatasetChain openMasked(const std::string& file, bool allHeights)
 {
     DatasetChain chain = RasterFile::open(file);
-    auto mask = std::make_unique<RasterMask>(chain.top(), 1,
+    auto mask = std::make_unique<RasterMask>(chain.top(), std::vector<int>{1},
                                              allHeights ? UndeclaredVoids() : UndeclaredVoids::of(file));
     if (!mask->isEmpty() && !mask->isNoDataValue())
         RasterMask::addTo(chain, std::move(mask), RasterMask::Form::NOT_A_NUMBER);

@@ -129,13 +129,15 @@ private:
     const MappingRasterRequest& read(const ScenePlace& place, const SceneMapping::Raster& raster)
     {
         const auto [known, isNew] = _rasters.emplace(
-            std::make_tuple(osgDB::getRealPath(raster.file.path), raster.kind, raster.maxSide),
+            std::make_tuple(osgDB::getRealPath(raster.file.path), raster.kind, raster.maxSide,
+                            raster.bands ? raster.bands->channels[0].range : std::nullopt),
             MappingRasterRequest());
         MappingRasterRequest& request = known->second;
         if (!isNew) return request;
         request.file = raster.file.path;
         request.options.kind = raster.kind;
         request.options.maxSide = _terrain.sideWithin(raster.file, raster.maxSide);
+        if (raster.bands) request.options.bands = *raster.bands;
         request.hasOrigin = _hasOrigin;
         request.frame = _terrain.frame();
         request.frame.origin = _effect.getLocalOrigin();
@@ -210,6 +212,7 @@ private:
         request.pictures = _terrain.overlayPictures();
         request.layer = overlay.layer;
         if (overlay.style) request.style = overlay.style->path;
+        request.bands = overlay.bands;
         if (_hasOrigin) request.frames.push_back(_effect.getLocalOrigin());
         const std::string fault =
             SceneTerrain::ask(overlay.place, "sceneOverlays", &request, "use a <layer> with a <mapping>");
@@ -316,7 +319,9 @@ private:
     EffectScene& _node;
     const osg::EllipsoidModel* _ellipsoid;
     bool _hasOrigin;
-    std::map<std::tuple<std::string, std::optional<DataLayer::Kind>, int>, MappingRasterRequest> _rasters;
+    using RasterKey = std::tuple<std::string, std::optional<DataLayer::Kind>, int,
+                                 std::optional<std::pair<double, double>>>;
+    std::map<RasterKey, MappingRasterRequest> _rasters;
 };
 
 } // namespace

@@ -28,7 +28,8 @@ struct SceneOverlaysRequest
     bool globe = true;
     std::string wkt;
     std::string colors;
-    std::string layer, style; ///< of vector data
+    std::string layer, style;         ///< of vector data
+    std::optional<RasterBands> bands; ///< of rasters
     int maxSide = 0;
     double maxTexels = 0.0;                      ///< of KML's pictures together
     OverlayRaster::Pictures* pictures = nullptr; ///< of the scene's KML files
@@ -43,6 +44,7 @@ struct SceneSequenceRequest
     std::string file; ///< with the variable behind a colon
     std::string colors;
     int maxSide = 0;
+    std::optional<RasterBands> bands;
     bool globe = true;
     std::string wkt;
     bool moves = true; ///< the frame's origin becomes the rasters' middle

@@ -87,6 +87,7 @@ private:
                              SceneXml::real(node, "opacity"),
                              SceneXml::integer(node, "order")};
         if (isGiven(node, "style")) overlay.style = _xml.path(node, "style");
+        overlay.bands = bandsOf(node);
         _result.overlays.push_back(overlay);
     }
 
@@ -139,8 +140,8 @@ private:
         result.mapping = new ProjectiveMapping;
         ProjectiveMapping& mapping = *result.mapping;
         _xml.set(mapping, node,
-                 {"layer", "mask", "table", "transfer", "file", "kind", "maxSide", "west", "south", "east",
-                  "north", "longitude", "latitude"});
+                 {"layer", "mask", "table", "transfer", "file", "kind", "maxSide", "stretch", "west", "south",
+                  "east", "north", "longitude", "latitude"});
         mapping.setLayer(findNamed(_xml, node, "layer", _layers, "layer"));
         mapping.setMask(findNamed(_xml, node, "mask", _layers, "layer"));
         mapping.setTable(findNamed(_xml, node, "table", _tables, "colorTable"));
@@ -163,7 +164,18 @@ private:
         if (kind == "color") raster.kind = DataLayer::COLOR;
         if (kind == "value") raster.kind = DataLayer::VALUE;
         if (kind == "class") raster.kind = DataLayer::CLASS;
+        raster.bands = bandsOf(node);
         return raster;
+    }
+
+    std::optional<RasterBands> bandsOf(xmlNode* node) const
+    {
+        if (!isGiven(node, "stretch")) return std::nullopt;
+        RasterBands bands;
+        if (!bands.setRange(attributeOf(node, "stretch")))
+            _xml.fail(node, "the stretch is \"" + attributeOf(node, "stretch").substr(0, 40) +
+                                "\"; write two different numbers with a comma between them.");
+        return bands;
     }
 
     void readPlacing(xmlNode* node, SceneMapping& result) const

@@ -8,6 +8,7 @@
 #include <osgGeoFX/mapping/RoutePath.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/StrokeLines.h>
+#include <osgGeoFX/raster/RasterBands.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/viewer/EffectPresets.h>
 
@@ -120,6 +121,7 @@ struct SceneMapping
         ScenePath file;
         std::optional<DataLayer::Kind> kind; ///< nothing: the file decides
         int maxSide = 0;
+        std::optional<RasterBands> bands = std::nullopt; ///< nothing: the file and its numbers decide
     };
 
     ScenePlace place;
@@ -141,6 +143,7 @@ struct SceneOverlay
     int maxSide = 0;
     double opacity = 1.0;
     int order = 0;
+    std::optional<RasterBands> bands = std::nullopt; ///< of rasters; nothing: the file and its numbers decide
 };
 
 /// Rasters in time.

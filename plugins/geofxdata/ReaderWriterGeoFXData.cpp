@@ -215,6 +215,7 @@ private:
         how.maxSide = request->maxSide;
         how.layer = request->layer;
         how.style = request->style;
+        how.bands = request->bands;
         if (!reader.read(request->file, how, error)) return error;
         request->frames = reader.frames;
         if constexpr (std::is_same_v<Request, OverlayFile>) request->files = reader.files;
@@ -254,14 +255,16 @@ private:
         {
             std::optional<DataLayer::Kind> kind;
             if (source.kind) kind = static_cast<DataLayer::Kind>(*source.kind);
-            request->tiles = source.vectors ? TiledVectors::open(source, error)
-                                            : TiledRaster::open(source.file, frame, kind, error);
+            request->tiles = source.vectors
+                                 ? TiledVectors::open(source, error)
+                                 : TiledRaster::open(source.file, frame, kind, error, source.bands);
             if (!request->tiles) return error;
         }
         else
         {
             const auto [file, variable] = SequenceRaster::parse(source.file);
-            const auto raster = SequenceRaster::open(file, frame, false, {variable, source.maxSide}, error);
+            const auto raster =
+                SequenceRaster::open(file, frame, false, {variable, source.maxSide, source.bands}, error);
             if (!raster) return error;
             request->steps = raster->steps;
         }
@@ -280,6 +283,7 @@ private:
         SequenceRaster::Options how;
         how.variable = variable;
         how.maxSide = request->maxSide;
+        how.bands = request->bands;
         MappingFrame frame;
         frame.globe = request->globe;
         frame.wkt = request->wkt;

@@ -14,6 +14,7 @@
 #include <osgDB/Options>
 #include <osgDB/Registry>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,32 @@ namespace
 
 /// Stands for vector data where a raster has its kind.
 constexpr int vectorKind = 100;
+/// Is added to the kind of a raster whose bands are written, too.
+constexpr int withBands = 200;
+
+void writeBands(osgDB::OutputStream& stream, const RasterBands& bands)
+{
+    for (const RasterBands::Channel& channel : bands.channels)
+    {
+        stream << channel.band << channel.range.has_value();
+        if (channel.range) stream << exactText(channel.range->first) << exactText(channel.range->second);
+    }
+}
+
+RasterBands readBands(osgDB::InputStream& stream)
+{
+    RasterBands bands;
+    for (RasterBands::Channel& channel : bands.channels)
+    {
+        bool hasRange = false;
+        stream >> channel.band >> hasRange;
+        channel.band = std::max(channel.band, 0);
+        if (!hasRange) continue;
+        const double black = readNumber(stream, "LayerSource");
+        channel.range = {black, readNumber(stream, "LayerSource")};
+    }
+    return bands;
+}
 
 } // namespace
 
@@ -51,13 +78,16 @@ void writeSource(osgDB::OutputStream& stream, const LayerSource& source)
 {
     stream.writeWrappedString(source.file);
     stream.writeWrappedString(source.wkt);
-    stream << source.globe << source.maxSide << (source.vectors ? vectorKind : source.kind.value_or(-1));
+    const int kind = source.kind.value_or(-1) + (source.bands ? withBands : 0);
+    stream << source.globe << source.maxSide << (source.vectors ? vectorKind : kind);
     if (source.vectors)
     {
         stream.writeWrappedString(source.vectors->layer);
         stream.writeWrappedString(source.vectors->style);
         stream << source.vectors->allowOutside;
     }
+    else if (source.bands)
+        writeBands(stream, *source.bands);
     for (const double number :
          {source.origin.x, source.origin.y, source.origin.longitude, source.origin.latitude})
         stream << exactText(number);
@@ -71,6 +101,8 @@ LayerSource readSource(osgDB::InputStream& stream)
     stream.readWrappedString(source.file);
     stream.readWrappedString(source.wkt);
     stream >> source.globe >> source.maxSide >> kind;
+    const bool hasBands = kind >= withBands - 1;
+    if (hasBands) kind -= withBands;
     if (kind >= DataLayer::COLOR && kind <= DataLayer::CLASS) source.kind = kind;
     if (kind == vectorKind)
     {
@@ -79,6 +111,7 @@ LayerSource readSource(osgDB::InputStream& stream)
         stream.readWrappedString(source.vectors->style);
         stream >> source.vectors->allowOutside;
     }
+    if (hasBands) source.bands = readBands(stream);
     for (double* const number :
          {&source.origin.x, &source.origin.y, &source.origin.longitude, &source.origin.latitude})
         *number = readNumber(stream, "LayerSource");

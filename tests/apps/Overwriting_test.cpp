@@ -299,6 +299,7 @@ TEST_F(Overwriting, PicturesOfPanorama)
          "--label-field",
          "--attribution",
          "--bits",
+         "--stretch",
          "--explain",
          "--quiet"});
 }
@@ -533,6 +534,7 @@ TEST_F(Overwriting, OtherPrograms)
                    "--vertical",
                    "--tree-line",
                    "--lake-area",
+                   "--stretch",
                    "--voids",
                    "--void-reach",
                    "--void-smoothing",

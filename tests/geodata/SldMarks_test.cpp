@@ -3,9 +3,9 @@
 //
 // Marks and hatches as QGIS and GeoServer write them into SLD files: how much each covers, where its lines run, and what stands in for what is not drawn.
 #include <osgGeoFX/geodata/OverlayReader.h>
-#include <tools/GeofxPlugins.h>
 #include <tools/TempDir.h>
 
+#include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <osg/Math>
 

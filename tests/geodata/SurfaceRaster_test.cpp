@@ -348,7 +348,7 @@ TEST_F(SurfaceRasterLayers, OfNoUseAreToldWithFileAndMend)
     holds(sentenceOf(missing, SurfaceData::HEIGHT), "is not a raster that GDAL can read");
     holds(sentenceOf(TestRaster(4, 4).crs("EPSG:4326").write(_folder / "a.tif"), SurfaceData::HEIGHT),
           "gdal_translate -a_ullr");
-    holds(sentenceOf(raster(4, 4, 3, GDT_Float32).write(_folder / "d.tif"), SurfaceData::COLOR),
+    holds(sentenceOf(raster(4, 4, 1, GDT_Float32).write(_folder / "d.tif"), SurfaceData::COLOR),
           "are not colors");
     holds(sentenceOf(good, SurfaceData::NORMAL), "derive them");
     holds(sentenceOf(good, SurfaceData::ASPECT), "derive them");

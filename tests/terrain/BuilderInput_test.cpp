@@ -155,7 +155,7 @@ TEST_F(BuilderInput, ValuesThatCannotBeUsed)
     expectDemRefusal(placed(TestRaster(20, 20), -32768.0, _folder / "undeclared.tif"),
                      {"no data at all", "gdalinfo"});
     expectDemRefusal(placed(TestRaster(1, 1), 100.0, _folder / "pixel.tif"), {"at least 2 × 2"});
-    const std::string image = placed(TestRaster(20, 20, 3, GDT_Float32), 0.5, _folder / "image.tif");
+    const std::string image = placed(TestRaster(20, 20, 1, GDT_Float32), 0.5, _folder / "image.tif");
     expectRefusal({"--dem", goodDem(), "--imagery", image}, {image, "not colors", "-ot Byte"});
     const std::string classes = placed(TestRaster(20, 20, 1, GDT_Int32), 1.0, _folder / "classes.tif");
     const std::string table = _folder.write("t.csv", "value,class,name,red,green,blue\n1,a,A,1,2,3\n");

@@ -4,9 +4,11 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/CoordinateText.h>
+#include <osgGeoFX/geodata/detail/RasterColors.h>
 #include <osgGeoFX/geodata/detail/RasterFile.h>
 #include <osgGeoFX/geodata/detail/RasterMask.h>
 #include <osgGeoFX/geodata/detail/ReadingErrors.h>
+#include <osgGeoFX/geodata/detail/Remarks.h>
 #include <osgGeoFX/geodata/detail/VirtualRaster.h>
 #include <osgGeoFX/mapping/LayerWords.h>
 #include <osgGeoFX/paging/ReadingFile.h>
@@ -135,8 +137,8 @@ VectorTarget vectorTargetOf(const MappingFrame& frame, const std::string& file)
 }
 
 FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed,
-                         Formats formats, int overview)
-    : _file(std::move(file))
+                         Formats formats, int overview, const RasterBands& show)
+    : bands(show), _file(std::move(file))
 {
     static const char* const plainPictures[] = {"PNG", "JPEG", "GIF",         "GTiff",
                                                 "BMP", "WEBP", "JP2OpenJPEG", nullptr};
@@ -178,8 +180,11 @@ void FrameRaster::prepare(std::optional<DataLayer::Kind> wanted, bool placed)
     if (placed) checkPlace();
     if (GDALDataTypeIsComplex(band().GetRasterDataType()))
         fail("its values are complex numbers; export a real band with gdal_translate -ot Float32");
-    const bool colors = band().GetColorTable() || top().GetRasterCount() >= 3;
-    kind = wanted.value_or(colors ? DataLayer::COLOR : DataLayer::VALUE);
+    kind = wanted.value_or(RasterColors::areIn(top()) ? DataLayer::COLOR : DataLayer::VALUE);
+    if (!wanted && kind == DataLayer::VALUE && top().GetRasterCount() >= 3)
+        remarkOnce(_file + ": the first of its " + std::to_string(top().GetRasterCount()) +
+                   " bands is shown, as values. --sequence shows them one after the other; of a picture, "
+                   "gdal_edit.py -colorinterp_1 red -colorinterp_2 green and so on declare the colors.");
     if (kind == DataLayer::COLOR)
         makeColors();
     else
@@ -218,7 +223,7 @@ void FrameRaster::checkSize() const
 void FrameRaster::giveWords(DataLayer& layer) const
 {
     if (kind == DataLayer::COLOR) return;
-    GDALRasterBand& file = *_chain.file().GetRasterBand(1);
+    GDALRasterBand& file = *_chain.file().GetRasterBand(std::max(bands.channels[0].band, 1));
     if (kind == DataLayer::VALUE && file.GetUnitType()) LayerWords::setUnit(layer, file.GetUnitType());
     if (kind != DataLayer::CLASS) return;
     std::map<double, std::string> names;
@@ -587,24 +592,22 @@ void FrameRaster::translate(const Arguments& arguments)
 /// Red, green, blue and alpha, bytes.
 void FrameRaster::makeColors()
 {
-    const GDALDataType type = band().GetRasterDataType();
-    _palette = band().GetColorTable() != nullptr;
-    if (!_palette && type != GDT_Byte && type != GDT_UInt16)
-        fail("its pixels are not colors (" + std::string(GDALGetDataTypeName(type)) +
-             "); show them as values, or color them with gdaldem color-relief");
-    const GdalErrorScope errors;
-    if (!RasterMask::addColors(_chain)) failToUse(errors);
+    _palette = band().GetColorTable() != nullptr && bands.channels[0].band == 0;
+    RasterColors::add(_chain, bands, _file);
 }
 
 void FrameRaster::makeValues()
 {
+    const int number = std::max(bands.channels[0].band, 1);
+    if (number > top().GetRasterCount())
+        fail("it has " + std::to_string(top().GetRasterCount()) + " bands, and no band " +
+             std::to_string(number) + "; name one of these");
+    auto mask = std::make_unique<RasterMask>(top(), std::vector<int>{number});
+    const bool isMasked = !mask->isEmpty() && !mask->isNoDataValue();
+    if (number > 1 || (!isMasked && top().GetRasterCount() > 1)) translate({"-b", std::to_string(number)});
     scale = band().GetScale();
     offset = band().GetOffset();
-    auto mask = std::make_unique<RasterMask>(top(), 1);
-    if (!mask->isEmpty() && !mask->isNoDataValue())
-        RasterMask::addTo(_chain, std::move(mask), RasterMask::Form::NOT_A_NUMBER);
-    else if (top().GetRasterCount() > 1)
-        translate({"-b", "1"});
+    if (isMasked) RasterMask::addTo(_chain, std::move(mask), RasterMask::Form::NOT_A_NUMBER);
 }
 
 } // namespace osgGeoFX

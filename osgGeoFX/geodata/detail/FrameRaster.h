@@ -8,6 +8,7 @@
 
 #include <osgGeoFX/geodata/MappingRaster.h>
 #include <osgGeoFX/mapping/LayerSource.h>
+#include <osgGeoFX/raster/RasterBands.h>
 
 #include <osg/Vec2d>
 
@@ -62,15 +63,16 @@ public:
         PLAIN_PICTURES ///< formats that hold all of a picture themselves: PNG, JPEG, GIF, TIFF, BMP, WebP, JPEG 2000
     };
     /// `placed`: whether it needs a georeference, which all but picture() go by. `overview`: the index of the overview that is
-    /// taken for the raster; -1 for the raster itself.
+    /// taken for the raster; -1 for the raster itself. `show`: of an overview, with all that was decided for the raster.
     FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed = true,
-                Formats formats = ANY_FORMAT, int overview = -1);
+                Formats formats = ANY_FORMAT, int overview = -1, const RasterBands& show = {});
     /// The same of datasets that are open, each above the one before it; `file` is for messages.
     FrameRaster(std::string file, DatasetChain chain, std::optional<DataLayer::Kind> wanted);
     FrameRaster(const FrameRaster&) = delete;
     FrameRaster& operator=(const FrameRaster&) = delete;
 
     DataLayer::Kind kind = DataLayer::COLOR;
+    RasterBands bands;  ///< what is shown; of colors, with all that the file and its numbers have decided
     double scale = 1.0; ///< of values
     double offset = 0.0;
 

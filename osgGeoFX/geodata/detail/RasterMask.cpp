@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/geodata/detail/RasterMask.h>
-#include <osgGeoFX/geodata/detail/VirtualRaster.h>
 
 #include <algorithm>
 #include <cmath>
@@ -217,22 +216,33 @@ CPLErr MaskedBand::IReadBlock(int column, int row, void* data)
 
 } // namespace
 
-RasterMask::RasterMask(GDALDataset& dataset, int bands, UndeclaredVoids undeclared)
-    : _first(dataset.GetRasterBand(1)), _undeclared(std::move(undeclared))
+RasterMask::RasterMask(GDALDataset& dataset, const std::vector<int>& bands, UndeclaredVoids undeclared,
+                       int overview)
+    : _first(dataset.GetRasterBand(bands.front())), _undeclared(std::move(undeclared))
 {
+    const auto levelOf = [&](GDALRasterBand* band)
+    {
+        return overview < 0 ? band : band->GetOverview(overview);
+    };
     GDALRasterBand& first = *_first;
     if (hasOwnMask(first))
+        for (const int band : bands)
+        {
+            GDALRasterBand* const mask = dataset.GetRasterBand(band)->GetMaskBand();
+            GDALRasterBand* const coarse = levelOf(mask);
+            _masks.push_back(coarse ? coarse : levelOf(dataset.GetRasterBand(band))->GetMaskBand());
+            if (first.GetMaskFlags() & GMF_PER_DATASET) break;
+        }
+    for (const int band : bands)
+        if (hasNoData(*dataset.GetRasterBand(band)))
+            _noData.push_back(std::make_unique<GDALNoDataMaskBand>(levelOf(dataset.GetRasterBand(band))));
+    if (_noData.size() < bands.size()) _noData.clear();
+    for (int i = 1; i <= dataset.GetRasterCount(); ++i)
     {
-        const int masks = first.GetMaskFlags() & GMF_PER_DATASET ? 1 : bands;
-        for (int i = 1; i <= masks; ++i)
-            _masks.push_back(dataset.GetRasterBand(i)->GetMaskBand());
+        GDALRasterBand* const band = dataset.GetRasterBand(i);
+        const bool isShown = std::find(bands.begin(), bands.end(), i) != bands.end();
+        if (!isShown && band->GetColorInterpretation() == GCI_AlphaBand) _alpha = levelOf(band);
     }
-    for (int i = 1; i <= bands && hasNoData(*dataset.GetRasterBand(i)); ++i)
-        _noData.push_back(std::make_unique<GDALNoDataMaskBand>(dataset.GetRasterBand(i)));
-    if (_noData.size() < static_cast<std::size_t>(bands)) _noData.clear();
-    for (int i = bands + 1; i <= dataset.GetRasterCount(); ++i)
-        if (dataset.GetRasterBand(i)->GetColorInterpretation() == GCI_AlphaBand)
-            _alpha = dataset.GetRasterBand(i);
 }
 
 bool RasterMask::readMost(const std::vector<GDALRasterBand*>& bands, int left, int top, int columns, int rows,
@@ -291,35 +301,6 @@ bool RasterMask::read(int left, int top, int columns, int rows, unsigned char* o
 void RasterMask::addTo(DatasetChain& chain, std::unique_ptr<RasterMask> mask, Form form)
 {
     chain.add(DatasetPtr(new MaskedRaster(chain.top(), std::move(mask), form)));
-}
-
-bool RasterMask::addColors(DatasetChain& chain)
-{
-    GDALDataset& raster = chain.top();
-    GDALRasterBand& first = *raster.GetRasterBand(1);
-    const bool palette = first.GetColorTable() != nullptr;
-    const bool one = palette || raster.GetRasterCount() < 3;
-    auto mask = std::make_unique<RasterMask>(raster, one ? 1 : 3);
-    const bool isMasked = !mask->isEmpty();
-    std::vector<std::string> arguments{"-a_nodata", "none", "-mask", "none"};
-    if (palette)
-        arguments.insert(arguments.end(), {"-expand", "rgba"});
-    else
-        arguments.insert(arguments.end(), {"-b", "1", "-b", one ? "1" : "2", "-b", one ? "1" : "3", "-ot",
-                                           "Byte", "-colorinterp", "red,green,blue"});
-    if (!palette && first.GetRasterDataType() == GDT_UInt16)
-        for (const char* const scale : {"-scale_1", "-scale_2", "-scale_3"})
-            arguments.insert(arguments.end(), {scale, "0", "65535", "0", "255"});
-    if (!addVirtualRaster(chain, arguments)) return false;
-    if (isMasked)
-        addTo(chain, std::move(mask), Form::ALPHA);
-    else if (!palette)
-    {
-        // A mask that is missing nowhere becomes the alpha, so that overviews stay.
-        if (!addVirtualRaster(chain, {"-b", "1", "-b", "2", "-b", "3", "-b", "mask,1"})) return false;
-        chain.top().GetRasterBand(4)->SetColorInterpretation(GCI_AlphaBand);
-    }
-    return true;
 }
 
 bool RasterMask::isInOverview(GDALDataset& dataset, int overview)

@@ -16,13 +16,16 @@ namespace osgGeoFX
 /** Which pixels of a raster are missing, in one place for all that read rasters.
 
     A pixel is missing where the raster's mask is 0 (in the file or in a file beside it), where its alpha band is 0, where all of
-    its bands have their no-data value, or where its first band has an undeclared one, if such are given. One band alone may have that value by chance: a color with no red is no hole. GDAL's own masks
+    the bands that are shown have their no-data value, or where the first of these has an undeclared one, if such are given. One band alone may have its no-data value by chance: a color with no red is no hole. GDAL's own masks
     show one of these three, and its virtual datasets show the mask of a band but not that of a color. Not thread-safe. */
 class RasterMask
 {
 public:
-    /// Of the first `bands` bands. The dataset must outlive the mask.
-    RasterMask(GDALDataset& dataset, int bands, UndeclaredVoids undeclared = {});
+    /// Of the bands that are shown, by their numbers, which must be some. `undeclared`: of an elevation; only without an overview. `overview`: the
+    /// index of the overview whose pixels count, which must have the mask (isInOverview()); -1 for the dataset itself. The dataset must outlive the
+    /// mask.
+    RasterMask(GDALDataset& dataset, const std::vector<int>& bands, UndeclaredVoids undeclared = {},
+               int overview = -1);
 
     /// Whether no pixel can be missing.
     bool isEmpty() const { return _masks.empty() && _noData.empty() && !_alpha && _undeclared.isEmpty(); }
@@ -44,10 +47,6 @@ public:
     /// Puts a dataset on top of the chain that has the bands, the place and the metadata of the one below, and the mask in this form. It has no
     /// overviews: those of a mask need not be there. The mask's dataset must be in the chain.
     static void addTo(DatasetChain& chain, std::unique_ptr<RasterMask> mask, Form form);
-
-    /// Puts red, green, blue and alpha, bytes, on top of a chain that has a palette, or bytes or numbers of 16 bits in one band or at least three.
-    /// False where GDAL cannot.
-    static bool addColors(DatasetChain& chain);
 
     /// Whether an overview of a dataset has the mask that the dataset has.
     static bool isInOverview(GDALDataset& dataset, int overview);

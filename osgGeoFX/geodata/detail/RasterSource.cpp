@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/geodata/detail/LatticeTransformer.h>
 #include <osgGeoFX/geodata/detail/Lengths.h>
+#include <osgGeoFX/geodata/detail/RasterColors.h>
 #include <osgGeoFX/geodata/detail/RasterFile.h>
 #include <osgGeoFX/geodata/detail/RasterMask.h>
 #include <osgGeoFX/geodata/detail/ReadingErrors.h>
@@ -79,8 +80,9 @@ struct RasterSource::WarpRequest
     bool alpha = false;
 };
 
-RasterSource::RasterSource(const std::string& file, RasterKind kind, const UndeclaredVoids& undeclared)
-    : _file(file)
+RasterSource::RasterSource(const std::string& file, RasterKind kind, const RasterBands& bands,
+                           const UndeclaredVoids& undeclared)
+    : _file(file), _bands(bands)
 {
     initialiseGdal();
     const std::string path = RasterFile::parse(file).first;
@@ -137,7 +139,7 @@ void RasterSource::openAs(RasterKind kind, const UndeclaredVoids& undeclared)
 
     if (kind != RasterKind::Imagery)
     {
-        auto mask = std::make_unique<RasterMask>(_chain.top(), 1, undeclared);
+        auto mask = std::make_unique<RasterMask>(_chain.top(), std::vector<int>{1}, undeclared);
         if (!mask->isEmpty() && !mask->isNoDataValue())
             RasterMask::addTo(_chain, std::move(mask),
                               kind == RasterKind::LandCover ? RasterMask::Form::ALPHA
@@ -153,14 +155,7 @@ void RasterSource::openAs(RasterKind kind, const UndeclaredVoids& undeclared)
                        CPLSPrintf("%.17g", _metresPerHeight)});
     }
     else if (kind == RasterKind::Imagery)
-    {
-        if (!band->GetColorTable() && type != GDT_Byte && type != GDT_UInt16)
-            fail("its pixels are not colors (" + std::string(GDALGetDataTypeName(type)) +
-                 "); make bytes of them with gdal_translate -ot Byte -scale, or color them with gdaldem "
-                 "color-relief");
-        const GdalErrorScope errors;
-        if (!RasterMask::addColors(_chain)) failToUse(errors);
-    }
+        RasterColors::add(_chain, _bands, _file);
     else if (kind == RasterKind::TreeCover)
     {
         if (band->GetColorTable())
@@ -205,7 +200,7 @@ void RasterSource::warpByPlaces(RasterKind kind)
 
 void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>& colors)
 {
-    auto mask = std::make_unique<RasterMask>(_chain.top(), 1);
+    auto mask = std::make_unique<RasterMask>(_chain.top(), std::vector<int>{1});
     translate({"-b", "1", "-a_nodata", "none", "-mask", "none"});
     // GDAL looks a color table up by its index, and a <LUT> by searching.
     GDALColorTable table;

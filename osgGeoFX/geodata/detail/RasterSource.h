@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
 #include <osgGeoFX/geodata/detail/UndeclaredVoids.h>
+#include <osgGeoFX/raster/RasterBands.h>
 
 #include <array>
 #include <optional>
@@ -56,8 +57,9 @@ enum class RasterKind
 class RasterSource
 {
 public:
-    /// `undeclared`: heights of an elevation that are none.
-    RasterSource(const std::string& file, RasterKind kind, const UndeclaredVoids& undeclared = {});
+    /// `bands`: what imagery shows. `undeclared`: heights of an elevation that are none.
+    RasterSource(const std::string& file, RasterKind kind, const RasterBands& bands = {},
+                 const UndeclaredVoids& undeclared = {});
     RasterSource(RasterSource&&) = default;
     ~RasterSource();
 
@@ -86,6 +88,8 @@ public:
     const std::string& file() const { return _file; }
     /// Metres in the unit of the file's heights.
     double metresPerHeight() const { return _metresPerHeight; }
+    /// What imagery shows, with all that the file and its numbers have decided.
+    const RasterBands& bands() const { return _bands; }
 
 private:
     /// Widens the footprint of a raster around a pole, or all around the globe, to every longitude.
@@ -100,6 +104,7 @@ private:
     [[noreturn]] void failToUse(const GdalErrorScope& errors) const;
 
     std::string _file;
+    RasterBands _bands;
     OGRSpatialReference _srs;
     std::array<double, 6> _geoTransform{};
     double _metresPerHeight = 1.0;

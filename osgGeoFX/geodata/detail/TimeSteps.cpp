@@ -506,7 +506,7 @@ private:
 class FileSteps final : public TimeSteps
 {
 public:
-    explicit FileSteps(const std::string& folder)
+    FileSteps(const std::string& folder, const RasterBands& bands) : _bands(bands)
     {
         std::error_code fault;
         for (const auto& each : fs::directory_iterator(folder, fault))
@@ -538,7 +538,13 @@ public:
 
     std::unique_ptr<FrameRaster> step(std::size_t index) override
     {
-        return std::make_unique<FrameRaster>(_files[index], std::nullopt);
+        auto raster = std::make_unique<FrameRaster>(_files[index], std::nullopt, true,
+                                                    FrameRaster::ANY_FORMAT, -1, _bands);
+        // All are as bright as the first.
+        if (index == 0)
+            for (std::size_t i = 0; i < _bands.channels.size(); ++i)
+                _bands.channels[i].range = raster->bands.channels[i].range;
+        return raster;
     }
 
 private:
@@ -565,6 +571,7 @@ private:
     }
 
     std::vector<std::string> _files;
+    RasterBands _bands;
 };
 
 } // namespace
@@ -582,7 +589,8 @@ DatasetChain TimeSteps::first(const std::string& file, const std::string& variab
     return DimensionSteps(file, std::move(dataset), variable, false).rasterOf(0);
 }
 
-std::unique_ptr<TimeSteps> TimeSteps::open(const std::string& file, const std::string& variable)
+std::unique_ptr<TimeSteps> TimeSteps::open(const std::string& file, const std::string& variable,
+                                           const RasterBands& bands)
 {
     initialiseGdal();
     std::error_code fault;
@@ -597,7 +605,7 @@ std::unique_ptr<TimeSteps> TimeSteps::open(const std::string& file, const std::s
     if (!variable.empty())
         throw BuildError(file + ": it has no variables, so \"" + variable +
                          "\" is none of it; name the file alone.");
-    if (folder) return std::make_unique<FileSteps>(file);
+    if (folder) return std::make_unique<FileSteps>(file, bands);
     return std::make_unique<BandSteps>(file);
 }
 

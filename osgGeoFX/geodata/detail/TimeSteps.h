@@ -22,7 +22,9 @@ public:
     /// Those of a file, or of a folder of files. `variable`: of a data set of several dimensions; empty for the first that fits.
     /// Behind its name, brackets may choose among levels, members and other dimensions, by their values: "t[level=500,number=2]".
     /// Of a dimension that is not named the first value counts, which a warning states.
-    static std::unique_ptr<TimeSteps> open(const std::string& file, const std::string& variable);
+    /// `bands`: what the pictures of a folder show.
+    static std::unique_ptr<TimeSteps> open(const std::string& file, const std::string& variable,
+                                           const RasterBands& bands = {});
 
     /// The first step of a variable, which needs no time, for readers of single rasters; brackets may choose a time as well. Empty if the
     /// file is no data set of several dimensions.

@@ -105,7 +105,7 @@ struct UndeclaredVoids::Look
         int count;            ///< how many differ
     };
 
-    explicit Look(GDALDataset& raster) : band(*raster.GetRasterBand(1)), mask(raster, 1)
+    explicit Look(GDALDataset& raster) : band(*raster.GetRasterBand(1)), mask(raster, {1})
     {
         columns = raster.GetRasterXSize();
         rows = raster.GetRasterYSize();

@@ -54,7 +54,7 @@ void BuildPlan::chooseFingerprint()
     {
         std::string line = sourceLine("elevation", options.dems[i]);
         if (!demVoids[i].isEmpty()) line.insert(line.size() - 1, ", where " + demVoids[i].text());
-        demSources.push_back({line, _dems[i]});
+        demSources.push_back({line, _dems[i], {}});
     }
     for (std::size_t i = 0; i < options.imagery.size(); ++i)
         imagerySources[i].identity = sourceLine("imagery", options.imagery[i]);
@@ -79,6 +79,9 @@ void BuildPlan::chooseFingerprint()
     if (treeCoverSource) sources << treeCoverSource->identity;
 
     settings.precision(17);
+    if (options.stretch)
+        settings << "imagery stretched from " << options.stretch->first << " to " << options.stretch->second
+                 << "\n";
     if (options.treeLine) settings << "tree line " << *options.treeLine << "\n";
     if (options.allHeights) settings << "all heights\n";
     settings << "lake area " << options.lakeArea << "\n";

@@ -429,14 +429,18 @@ std::vector<const Footprint*> BuildPlan::colorPrints() const
 
 void BuildPlan::checkColors()
 {
-    const auto sourceOf = [&](const std::string& file, RasterKind kind)
+    const auto sourceOf = [&](const std::string& file, RasterKind kind, const RasterBands& bands = {})
     {
-        Source source{"", RasterSource(file, kind).footprint(scheme.crs)};
+        const RasterSource raster(file, kind, bands);
+        Source source{"", raster.footprint(scheme.crs), raster.bands()};
         require(overlaps(source.print, scheme), outside(file));
         return source;
     };
+    RasterBands wanted;
+    for (RasterBands::Channel& channel : wanted.channels)
+        channel.range = options.stretch;
     for (const auto& file : options.imagery)
-        imagerySources.push_back(sourceOf(file, RasterKind::Imagery));
+        imagerySources.push_back(sourceOf(file, RasterKind::Imagery, wanted));
     if (!options.landCover.empty()) landCoverSource = sourceOf(options.landCover, RasterKind::LandCover);
     if (!options.treeCover.empty()) treeCoverSource = sourceOf(options.treeCover, RasterKind::TreeCover);
 }

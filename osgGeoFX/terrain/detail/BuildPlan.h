@@ -117,6 +117,7 @@ public:
     {
         std::string identity;
         Footprint print;
+        RasterBands bands; ///< of imagery: what is shown
     };
     std::vector<UndeclaredVoids> demVoids; ///< by file of the elevation
     std::string heightUnits;               ///< of the files of the elevation, as a clause

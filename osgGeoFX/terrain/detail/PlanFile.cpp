@@ -36,6 +36,7 @@ json optionsOf(const BuildOptions& o)
 {
     json result = {{"dems", mapped(o.dems, &PathText::of)},
                    {"imagery", mapped(o.imagery, &PathText::of)},
+                   {"stretch", nullptr},
                    {"landCover", PathText::of(o.landCover)},
                    {"landCoverTable", PathText::of(o.landCoverTable)},
                    {"treeCover", PathText::of(o.treeCover)},
@@ -57,6 +58,7 @@ json optionsOf(const BuildOptions& o)
                    {"threads", o.threads},
                    {"memoryMiB", o.memoryMiB},
                    {"keep", o.keep}};
+    if (o.stretch) result["stretch"] = *o.stretch;
     if (o.treeLine) result["treeLine"] = *o.treeLine;
     return result;
 }
@@ -74,6 +76,7 @@ BuildOptions readOptions(const json& object)
     };
     take("dems", o.dems);
     take("imagery", o.imagery);
+    if (!object.at("stretch").is_null()) o.stretch = object.at("stretch").get<std::pair<double, double>>();
     take("landCover", o.landCover);
     take("landCoverTable", o.landCoverTable);
     take("treeCover", o.treeCover);

@@ -78,9 +78,9 @@ unsigned char byteOf(double share)
 RasterStack::RasterStack(const BuildPlan& plan) : _plan(plan)
 {
     for (std::size_t i = 0; i < plan.options.dems.size(); ++i)
-        _dems.emplace_back(plan.options.dems[i], RasterKind::Elevation, plan.demVoids[i]);
-    for (const auto& file : plan.options.imagery)
-        _imagery.emplace_back(file, RasterKind::Imagery);
+        _dems.emplace_back(plan.options.dems[i], RasterKind::Elevation, RasterBands(), plan.demVoids[i]);
+    for (std::size_t i = 0; i < plan.options.imagery.size(); ++i)
+        _imagery.emplace_back(plan.options.imagery[i], RasterKind::Imagery, plan.imagerySources[i].bands);
     _blends.resize(plan.layers.size());
     if (!plan.options.landCover.empty())
     {
