@@ -188,6 +188,33 @@ TEST_F(MappingProgram, RastersHaveColorsByTables)
     EXPECT_NEAR(redOf({"--mapping", "blue.kml", "--mapping", "red.kml"}).count, 43 * 62, 300);
 }
 
+// A picture of 12 bits and more is dark in bytes. Its numbers are told, or set.
+TEST_F(MappingProgram, PicturesOfSatellitesAreStretched)
+{
+    TestRaster raster(40, 40, 4, GDT_UInt16);
+    raster.placed(6.995, 45.005, 0.00025, 0.00025)
+        .crs("EPSG:4326")
+        .fill([](int column, int, int band) { return band == 2 && column >= 20 ? 2000.0 : 400.0; });
+    for (const auto& [band, color] :
+         {std::pair{1, GCI_BlueBand}, {2, GCI_GreenBand}, {3, GCI_RedBand}, {4, GCI_Undefined}})
+        raster.dataset().GetRasterBand(band)->SetColorInterpretation(color);
+    raster.write(_folder / "planet.tif");
+    const ProgramResult told = run({"--mapping", "planet.tif"});
+    EXPECT_EQ(told.exitCode, 0);
+    EXPECT_NE(
+        told.standardError.find("planet.tif: its numbers from 400 to 2000 (2 to 98 % of them) are shown"),
+        std::string::npos)
+        << told.standardError;
+    EXPECT_EQ(std::count(told.standardError.begin(), told.standardError.end(), '\n'), 1)
+        << told.standardError;
+    const Red set = redOf({"--mapping", "planet.tif", "--stretch", "400,2000"});
+    EXPECT_NEAR(set.left, width / 2, 2);
+    EXPECT_NEAR(set.count, 43 * 62 / 2, 250);
+    EXPECT_EQ(redOf({"--mapping", "planet.tif", "--stretch", "0,65535"}).count, 0) << "dark";
+    expectRefusal({"--mapping", "planet.tif", "--stretch", "400"}, "--stretch: \"400\" is not LOW,HIGH");
+    expectRefusal({"--stretch", "0,1"}, "--stretch is for pictures");
+}
+
 // A line from west to east north of the middle, as a GPX track; KML lines have a color of their own.
 TEST_F(MappingProgram, WaysAreInThePicture)
 {

@@ -447,6 +447,40 @@ TEST(SatelliteColors, StepsInTimeShareTheStretch)
     expectColor(pictureOf(opened->steps->read(1, error)), 200, 96, {255, 255, 255});
 }
 
+// Rasters around the globe are six parts.
+TEST(SatelliteColors, PartsOfTheWorldShowTheBands)
+{
+    const TempDir folder;
+    TestRaster world(36, 18, 4, GDT_UInt16);
+    world.placed(-180.0, 90.0, 10.0, 10.0)
+        .crs("EPSG:4326")
+        .fill([](int, int, int band) { return 500.0 * band; });
+    for (const char* const name : {"a.tif", "b.tif"})
+        world.write(folder / name, {"PHOTOMETRIC=MINISBLACK", "ALPHA=NO"});
+    SequenceRaster::Options options;
+    options.maxSide = 64;
+    RasterBands bands;
+    for (std::size_t i = 0; i < 3; ++i)
+        bands.channels[i] = {4 - static_cast<int>(i), std::pair(0.0, 2000.0)};
+    options.bands = bands;
+    MappingFrame globe;
+    std::string error;
+    const auto opened = SequenceRaster::open(folder.path().string(), globe, true, options, error);
+    ASSERT_TRUE(opened) << error;
+    ASSERT_EQ(opened->others.size(), 5u);
+    std::vector<osg::ref_ptr<SequenceSteps>> parts{opened->steps};
+    for (const SequenceRaster::Part& part : opened->others)
+        parts.push_back(part.steps);
+    for (const osg::ref_ptr<SequenceSteps>& part : parts)
+    {
+        const osg::ref_ptr<osg::Image> image = part->read(1, error);
+        ASSERT_TRUE(image) << error;
+        expectColor(pictureOf(image), 0.6 * columns, 0.6 * rows, shown({1500, 1000, 500}, 0, 2000));
+        ASSERT_TRUE(part->source()->bands);
+        EXPECT_EQ(part->source()->bands->channels[2].band, 2);
+    }
+}
+
 TEST(SatelliteColors, GuessesAreToldOnce)
 {
     const TempDir folder;

@@ -442,6 +442,37 @@ TEST_F(SceneMappingsPlugin, RastersLieWhereTheirGeoreferenceSays)
     EXPECT_NEAR(mappings->getMapping(0)->getCenter().length(), 0.0, 100.0);
 }
 
+TEST_F(SceneMappingsPlugin, PicturesMayBeStretched)
+{
+    geofx::test::TestRaster picture(40, 20, 3, GDT_UInt16);
+    picture.placed(-158.0, 21.5, 0.01, 0.01)
+        .crs("EPSG:4326")
+        .fill([](int, int, int band) { return 1000.0 * band; });
+    picture.write(_folder / "p.tif");
+    const auto colorOf = [](const ProjectiveMapping& mapping)
+    {
+        const osg::Image& image = *mapping.getLayer()->getImage();
+        const unsigned char* const texel =
+            image.data(static_cast<unsigned int>(image.s() / 2), static_cast<unsigned int>(image.t() / 2));
+        return std::array<int, 3>{texel[0], texel[1], texel[2]};
+    };
+    ProjectiveMappings* mappings =
+        read("<raster file='p.tif' stretch='0,2000'/><raster file='p.tif' stretch='5000,0'/>"
+             "<overlays file='p.tif' stretch='0,4000'/>");
+    ASSERT_TRUE(mappings);
+    ASSERT_EQ(mappings->getNumMappings(), 3u);
+    EXPECT_EQ(colorOf(*mappings->getMapping(0)), (std::array<int, 3>{0, 128, 255}));
+    EXPECT_EQ(colorOf(*mappings->getMapping(1)), (std::array<int, 3>{255, 204, 153}));
+    EXPECT_EQ(colorOf(*mappings->getMapping(2)), (std::array<int, 3>{0, 64, 128}));
+    for (const std::string stretch : {"1", "1,1", "a,b"})
+    {
+        const std::string message = messageOf(
+            _folder.write("x.geofx", sceneWith("<raster file='p.tif' stretch='" + stretch + "'/>")));
+        EXPECT_NE(message.find("two different numbers with a comma between them"), std::string::npos)
+            << message;
+    }
+}
+
 TEST_F(SceneMappingsPlugin, WhatGdalReadsIsALayer)
 {
     // Tiled floats with no-data and a scale, without any georeference: OSG's own reader of TIFF gives up on tiles.

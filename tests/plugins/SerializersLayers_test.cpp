@@ -235,6 +235,50 @@ TEST_F(SerializersLayers, APagedRasterIsOpenedAgainInItsPlace)
     EXPECT_TRUE(read->getMapping(1)->getLayer()->getImage());
 }
 
+// What is shown of a picture's bands stays.
+TEST_F(SerializersLayers, ThePicturesBandsAreThoseThatWereChosen)
+{
+    geofx::test::TestRaster picture(16, 16, 4, GDT_UInt16);
+    picture.placed(7.0, 45.0, 0.001, 0.001)
+        .crs("EPSG:4326")
+        .fill([](int, int, int band) { return 100.0 * band; });
+    const std::string file = picture.write(_folder / "picture.tif");
+    RasterBands bands;
+    bands.channels = {{{4, std::pair(0.0, 300.0)}, {3, std::pair(0.0, 400.0)}, {2, std::nullopt}}};
+    MappingFrame frame;
+    frame.origin = LocalOrigin::onGlobe(osg::DegreesToRadians(7.0), osg::DegreesToRadians(45.0));
+    std::string error;
+    for (const std::optional<DataLayer::Kind> kind :
+         {std::optional(DataLayer::COLOR), std::optional<DataLayer::Kind>()})
+    {
+        const osg::ref_ptr<RasterTiles> tiles = TiledRaster::open(file, frame, kind, error, bands);
+        ASSERT_TRUE(tiles) << error;
+        const osg::ref_ptr<ProjectiveMappings> effect = new ProjectiveMappings;
+        effect->addRaster(PagedRaster::create(tiles, {}, error));
+        for (const std::string& format : formats)
+        {
+            SCOPED_TRACE(format);
+            const osg::ref_ptr<ProjectiveMappings> read = throughFile(*effect, format);
+            ASSERT_TRUE(read);
+            ASSERT_EQ(read->getNumRasters(), 1u);
+            const PagedRaster& raster = *read->getRaster(0);
+            const std::optional<LayerSource> source = raster.tiles().source();
+            ASSERT_TRUE(source && source->bands);
+            EXPECT_EQ(source->kind.has_value(), kind.has_value());
+            for (std::size_t i = 0; i < 3; ++i)
+            {
+                EXPECT_EQ(source->bands->channels[i].band, bands.channels[i].band);
+                EXPECT_EQ(source->bands->channels[i].range, bands.channels[i].range);
+            }
+            const osg::Image& coarse = *raster.getMapping()->getLayer()->getImage();
+            const unsigned char* const texel = coarse.data(static_cast<unsigned int>(coarse.s() / 2),
+                                                           static_cast<unsigned int>(coarse.t() / 2));
+            EXPECT_EQ(texel[0], 255);
+            EXPECT_EQ(texel[1], 128) << "200 of 400, of the third band";
+        }
+    }
+}
+
 // Areas of a file are drawn again from the file, by the same style.
 TEST_F(SerializersLayers, VectorDataAreOpenedAgain)
 {

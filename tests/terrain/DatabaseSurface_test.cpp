@@ -86,6 +86,46 @@ TEST(DatabaseSurface, ImageryAtItsPlaces)
     expectNoSeams(o.output, 0);
 }
 
+// A satellite's picture of 16 bits, blue first: in each tile with the same stretch, and with another one if it is wanted.
+TEST(DatabaseSurface, ImageryOfSatellitesIsAsBrightInAllTiles)
+{
+    const TempDir folder;
+    const auto dem = writeRelief(folder / "dem.tif", 60, 60, 10.0, 50.0, 0.001);
+    TestRaster image(60, 60, 4, GDT_UInt16);
+    image.placed(10.0, 50.0, 0.001, 0.001)
+        .crs("EPSG:4326")
+        .fill([](int column, int, int band)
+              { return band == 3 ? 5000.0 : (column < 30 ? 300.0 : 1100.0) + 100.0 * band; });
+    for (const auto& [band, color] :
+         {std::pair{1, GCI_BlueBand}, {2, GCI_GreenBand}, {3, GCI_RedBand}, {4, GCI_Undefined}})
+        image.dataset().GetRasterBand(band)->SetColorInterpretation(color);
+    auto o = options(dem, folder / "db");
+    o.imagery = {image.write(folder / "image.tif")};
+    const auto expectColors = [&](double black, double white)
+    {
+        const auto shown = [&](double number)
+        {
+            return 255.0 * (number - black) / (white - black);
+        };
+        forEachTexel(o.output, DatabaseRoot(o.output).finestLevel(), 0,
+                     [&](double x, double, const osg::Image& picture, int column, int row)
+                     {
+                         if (std::abs(x - 10.03) < 0.0015) return;
+                         const double number = x < 10.03 ? 300.0 : 1100.0;
+                         const Color found = colorAt(picture, column, row);
+                         ASSERT_NEAR(found[0], shown(number + 200.0), 1.0) << x;
+                         ASSERT_NEAR(found[1], shown(number + 100.0), 1.0) << x;
+                         ASSERT_NEAR(found[2], shown(number), 1.0) << x;
+                     });
+    };
+    buildDatabase(o);
+    expectColors(300.0, 1300.0);
+    o.stretch = {0.0, 2000.0};
+    o.update = true;
+    EXPECT_EQ(buildDatabase(o).tilesKept, 0u) << "all are built again";
+    expectColors(0.0, 2000.0);
+}
+
 TEST(DatabaseSurface, LaterImageWins)
 {
     const TempDir folder;
