@@ -29,7 +29,7 @@ using Color = std::array<int, 4>;
 
 Color colorOf(int x, int y)
 {
-    return {50 + 50 * x, 50 + 50 * y, 120, 255};
+    return {50 + 25 * x, 50 + 25 * y, 120, 255};
 }
 
 /// Tiles of the levels 0 to 2; x and y, from the north, of those of level 2 make their colors. One of them is missing.

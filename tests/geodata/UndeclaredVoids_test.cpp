@@ -71,6 +71,27 @@ TEST_F(UndeclaredVoidsTest, ASingleValueFarFromAllOthersIsNoHeight)
     }
 }
 
+TEST_F(UndeclaredVoidsTest, AnyValueFarFromAllOthersAlongTheBorderIsNoHeight)
+{
+    for (const auto& [columns, rows] : {std::pair(3, 30), std::pair(30, 2)})
+        for (const bool atEnd : {false, true})
+        {
+            const auto height = [&](int c, int r)
+            {
+                return (atEnd ? 99 - c < columns && 79 - r < rows : c < columns && r < rows) ? 5000.0
+                                                                                             : relief(c, r);
+            };
+            EXPECT_TRUE(look(write(100, 80, height)).has(5000.0, 0, 0)) << columns << " " << atEnd;
+        }
+    // Within, such a value may be a tower's.
+    EXPECT_FALSE(
+        look(write(100, 80, [&](int c, int r) { return c == 50 && r == 40 ? 5000.0 : relief(c, r); }))
+            .has(5000.0, 50, 40));
+    EXPECT_TRUE(
+        look(write(100, 80, [&](int c, int r) { return c == 50 && r == 40 ? 32767.0 : relief(c, r); }))
+            .has(32767.0, 50, 40));
+}
+
 TEST_F(UndeclaredVoidsTest, SeveralSuchValuesAreFound)
 {
     const UndeclaredVoids voids =
@@ -236,9 +257,14 @@ TEST_F(UndeclaredVoidsTest, CoastsAndIslandsAreTheirOwn)
          {
              return c > 30 && c < 170 && r > 20 && r < 180 ? 30.0 + 0.1 * relief(c, r) : 0.0;
          }},
-        {"a plain with a tower", [](int c, int r)
+        {"a plain with a tower",
+         [](int c, int r)
          {
              return c == 40 && r == 50 ? 900.0 : 0.0;
+         }},
+        {"hills with a tower", [](int c, int r)
+         {
+             return c == 40 && r == 50 ? 900.0 : 0.1 * relief(c, r);
          }}};
     for (const auto& [name, height] : grounds)
     {

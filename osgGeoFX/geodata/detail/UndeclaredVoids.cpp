@@ -25,14 +25,16 @@ namespace
 
 // A value that is no height is so far from all heights, metres.
 constexpr double LEAST_GAP = 500.0;
+// Ground that is dry has heights between these, metres. A value between them may be a tower's, unless the raster ends in it.
+constexpr double LEAST_DRY = -500.0, MOST_DRY = 9000.0;
 // Fewer other pixels show nothing.
 constexpr std::uint64_t LEAST_PIXELS = 256;
 // So many values at each end of all are known: several kinds of missing heights, and the first true one.
 constexpr std::size_t ENDS = 6;
 // Along a quadrilateral's side, pixels; and how far the corners of the box around it lie beyond it.
 constexpr double LEAST_SIDE = 16.0, LEAST_CORNER = 2.5;
-// A quadrilateral is so full of data, and the data's hull fills so much of it.
-constexpr double FULL = 0.97;
+// So much of a quadrilateral is within the data's hull, and so much of it is data; the rest are lakes, and pixels along the sides.
+constexpr double FULL_OF_HULL = 0.97, FULL_OF_DATA = 0.95;
 // A margin along the sides, of the square root of the area: a reprojected survey has slightly curved sides.
 constexpr double MARGIN = 0.02;
 // The step at the data's end, in steps from one pixel to the next within them.
@@ -141,9 +143,16 @@ struct UndeclaredVoids::Look
     GDALRasterBand& band;
     RasterMask mask;
     int columns = 0, rows = 0;
-    std::map<double, std::uint64_t> lowest, highest; ///< the outermost values, and how often they stand
-    std::uint64_t heights = 0;                       ///< pixels that are not missing
-    std::optional<double> corner;                    ///< the value of all four corners
+    /// Pixels of one value.
+    struct Pixels
+    {
+        std::uint64_t count = 0;
+        bool isAtBorder = false; ///< whether one of them is among the raster's outermost pixels
+    };
+    using Ends = std::map<double, Pixels>;
+    Ends lowest, highest;         ///< the outermost values
+    std::uint64_t heights = 0;    ///< pixels that are not missing
+    std::optional<double> corner; ///< the value of all four corners
     std::vector<Run> runs;
     std::vector<double> steps, slopes; ///< at the ends of runs, and next to them within
 
@@ -184,9 +193,17 @@ private:
                 ++next;
             if (!_there[i] || std::isnan(_values[i])) continue;
             heights += next - i;
-            take(lowest, _values[i], next - i, std::less<>(),
-                 [](auto& ends) { return std::prev(ends.end()); });
-            take(highest, _values[i], next - i, std::greater<>(), [](auto& ends) { return ends.begin(); });
+            const auto rowOf = [&](std::size_t at)
+            {
+                return static_cast<int>(at / static_cast<std::size_t>(width));
+            };
+            const int first = rowOf(i), last = rowOf(next - 1);
+            const bool startsRow = last > first || i % static_cast<std::size_t>(width) == 0;
+            const bool endsRow = last > first || next % static_cast<std::size_t>(width) == 0;
+            const Pixels more{next - i, top + first == 0 || top + last == rows - 1 ||
+                                            (left == 0 && startsRow) || (left + width == columns && endsRow)};
+            take(lowest, _values[i], more, std::less<>(), [](auto& ends) { return std::prev(ends.end()); });
+            take(highest, _values[i], more, std::greater<>(), [](auto& ends) { return ends.begin(); });
         }
         if (corner)
             for (int row = 0; row < height; ++row)
@@ -195,13 +212,14 @@ private:
         return true;
     }
 
-    using Ends = std::map<double, std::uint64_t>;
     /// Counts a value if it is among the outermost ones.
     template<typename IsOuter, typename Inmost>
-    static void take(Ends& ends, double value, std::uint64_t count, IsOuter isOuter, Inmost inmost)
+    static void take(Ends& ends, double value, const Pixels& more, IsOuter isOuter, Inmost inmost)
     {
         if (ends.size() == ENDS && isOuter(inmost(ends)->first, value)) return;
-        ends[value] += count;
+        Pixels& pixels = ends[value];
+        pixels.count += more.count;
+        pixels.isAtBorder = pixels.isAtBorder || more.isAtBorder;
         if (ends.size() > ENDS) ends.erase(inmost(ends));
     }
 
@@ -273,7 +291,7 @@ UndeclaredVoids::quadrilateralAround(std::vector<osg::Vec2d> points)
     const Quadrilateral result{hull[0], hull[1], hull[2], hull[3]};
     for (std::size_t i = 0; i < 4; ++i)
         if ((result[(i + 1) % 4] - result[i]).length() < LEAST_SIDE) return {};
-    if (filled < FULL * area(result)) return {};
+    if (filled < FULL_OF_HULL * area(result)) return {};
     return result;
 }
 
@@ -307,11 +325,14 @@ UndeclaredVoids UndeclaredVoids::of(const std::string& file, double most)
 
     // One end after the other, as long as its value is far from the rest.
     auto &lowest = look.lowest, &highest = look.highest;
-    const auto isAlone = [&](double value, double next, std::uint64_t count)
+    const auto isAlone = [&](double value, double next, const Look::Pixels& pixels)
     {
+        const bool isDry = value * metres > LEAST_DRY && value * metres < MOST_DRY;
+        if (isDry && !pixels.isAtBorder) return false;
         const double rest = value < next ? highest.rbegin()->first - next : next - lowest.begin()->first;
         const double gap = std::abs(next - value);
-        return rest > 0.0 && gap >= rest && gap * metres >= LEAST_GAP && look.heights - count >= LEAST_PIXELS;
+        return rest > 0.0 && gap >= rest && gap * metres >= LEAST_GAP &&
+               look.heights - pixels.count >= LEAST_PIXELS;
     };
     const auto leaveOut = [&](double value, std::uint64_t count)
     {
@@ -324,9 +345,9 @@ UndeclaredVoids UndeclaredVoids::of(const std::string& file, double most)
     {
         const auto low = lowest.begin(), high = std::prev(highest.end());
         if (isAlone(high->first, std::prev(high)->first, high->second))
-            leaveOut(high->first, high->second);
+            leaveOut(high->first, high->second.count);
         else if (isAlone(low->first, std::next(low)->first, low->second))
-            leaveOut(low->first, low->second);
+            leaveOut(low->first, low->second.count);
         else
             break;
     }
@@ -375,7 +396,7 @@ UndeclaredVoids UndeclaredVoids::of(const std::string& file, double most)
                 }
                 all += std::max(0.0, to - from);
             }
-            if (data >= FULL * all)
+            if (data >= FULL_OF_DATA * all)
                 result._around = Surroundings{*look.corner, *inside,
                                               std::max(2.0, MARGIN * std::sqrt(0.5 * area(*inside)))};
         }

@@ -19,7 +19,7 @@ namespace osgGeoFX
 /** Values of an elevation raster that are no heights, though its file does not declare them as no-data.
 
     Two kinds are plain. A single value is as far from all others as these are from each other, and 500 m at least: −9999,
-    32767, 3.4e38. Or one value fills all that lies around a turned quadrilateral, as a survey leaves it that was rotated or
+    32767, 3.4e38. Between −500 and 9,000 m, where dry ground lies, it stands along the raster's border, too. Or one value fills all that lies around a turned quadrilateral, as a survey leaves it that was rotated or
     reprojected, and the heights begin with a step there. A coast is neither: its land has no four straight sides, and begins
     at the height of the sea. */
 class UndeclaredVoids
