@@ -15,7 +15,9 @@
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/paging/FreedMemory.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/print/PicturePrint.h>
+#include <osgGeoFX/viewer/AboveGround.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/Scene.h>
 
@@ -23,6 +25,7 @@
 #include <osg/Math>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -440,6 +443,7 @@ public:
         std::string error;
         const auto image = _renderer->render(_camera.view(frame), _camera.time(frame), figures, error);
         if (!image) throw Failure(tookTooLong, error);
+        sayIfBuried(frame);
         _map.draw(_renderer->camera(), *image,
                   [&](const osg::Image& plain)
                   {
@@ -464,6 +468,28 @@ public:
     }
 
 private:
+    /// A sentence for the first picture whose eye is below the ground.
+    void sayIfBuried(unsigned int frame)
+    {
+        constexpr double least = 0.5; // metres: ground is drawn with an error
+        if (_buried || !_scene.effects->getTerrain() || isPanorama()) return;
+        const double rise =
+            osgGeoFX::AboveGround::rise(*_scene.effects, _camera.view(frame), _renderer->camera(), 0.0);
+        if (rise < least) return;
+        _buried = true;
+        std::cerr << "osggeofx_render: the camera's eye is " << std::lround(rise)
+                  << " m below the ground, so the picture shows the ground from below; raise the eye by that "
+                     "much or more."
+                  << std::endl;
+    }
+    /// The eye of a panorama map is no place.
+    bool isPanorama() const
+    {
+        for (unsigned int i = 0; i < _scene.effects->getNumEffects(); ++i)
+            if (dynamic_cast<const osgGeoFX::PanoramaMap*>(_scene.effects->getEffect(i))) return true;
+        return false;
+    }
+
     void start()
     {
         if (_renderer) return;
@@ -481,6 +507,7 @@ private:
     geofx::web::ScenePage* const _page;
     std::unique_ptr<osgGeoFX::SceneRenderer> _renderer; ///< null until a picture must be drawn
     std::optional<StatisticsFile> _statistics;
+    bool _buried = false; ///< whether an eye below the ground was met
 };
 
 /// A film by many processes.

@@ -108,6 +108,7 @@
 #include <osgGeoFX/closeup/CloseUpHandler.h>
 #include <osgGeoFX/closeup/CloseUpPicking.h>
 #include <osgGeoFX/closeup/CloseUps.h>
+#include <osgGeoFX/closeup/LiftedPlaces.h>
 #include <osgGeoFX/closeup/RegionOfInterest.h>
 #include <osgGeoFX/closeup/SurfaceData.h>
 #include <osgGeoFX/closeup/SurfaceDerivation.h>

@@ -14,6 +14,13 @@ namespace osgGeoFX
 namespace
 {
 
+/// 0…1 where a value goes from `from` to `to`, without a kink.
+double eased(double from, double to, double value)
+{
+    const double share = std::clamp((value - from) / (to - from), 0.0, 1.0);
+    return share * share * (3.0 - 2.0 * share);
+}
+
 /// Within this share of the curve's radius nothing folds.
 constexpr double foldMargin = 0.9;
 
@@ -471,8 +478,14 @@ osg::Vec3d PerspectiveBend::heading(const ViewGeometry& view)
     osg::Vec3d heading = view.up ^ right;
     // Where the camera's right vector is vertical, there is no direction; the bend is gone before.
     const double length = heading.normalize();
-    const double share = std::clamp((length - 0.05) / 0.2, 0.0, 1.0);
-    return heading * (share * share * (3.0 - 2.0 * share));
+    // Square to the view, so that the bend's horizon is turned by the camera's roll, as the natural one is. There is no such
+    // direction straight down and for a camera on its side; towards them it is the one square to the camera's right.
+    osg::Vec3d side = view.up ^ osg::Vec3d(0.0, 0.0, 1.0);
+    const double level = side.normalize();
+    const double upright = heading * (side ^ view.up);
+    heading -= side * (eased(0.03, 0.34, level) * eased(0.2, 0.5, std::abs(upright)) * (heading * side));
+    heading.normalize();
+    return heading * eased(0.05, 0.25, length);
 }
 
 osg::ref_ptr<const DeformationSnapshot> PerspectiveBend::snapshot(const ViewGeometry& view) const

@@ -30,7 +30,8 @@ LabelPicture::LabelPicture(NameSet& names, EffectScene& scene, const osg::Camera
     : _names(&names), _width(camera.getViewport()->width()), _height(camera.getViewport()->height())
 {
     const DeformedView view(scene, camera);
-    const std::vector<NameSet::Seen> seen = names.inPicture(view, _width, _height, most);
+    const std::vector<NameSet::Seen> seen =
+        names.inPicture(scene, camera.getViewMatrix(), camera.getProjectionMatrix(), _width, _height, most);
     std::vector<bool> visible;
     for (const NameSet::Seen& each : seen)
         visible.push_back(depths.empty() || NameSet::isShown(each, NameSet::placesShown(each, depths)));

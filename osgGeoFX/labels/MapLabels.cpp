@@ -303,8 +303,8 @@ void MapLabels::traverse(osg::NodeVisitor& visitor)
             cameras.push_back(master);
         lookAtDepths(view, *_reader, cameras);
 
-        const DeformedView deformed(*scene, *master);
-        view.seen = _names->inPicture(deformed, width, height, mostCandidates);
+        view.seen = _names->inPicture(*scene, master->getViewMatrix(), master->getProjectionMatrix(), width,
+                                      height, mostCandidates, stamp ? stamp->getSimulationTime() : 0.0);
         view.index.clear();
         std::vector<LabelCandidate> candidates;
         for (std::size_t i = 0; i < view.seen.size(); ++i)

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/labels/NameSet.h>
 
+#include <osgGeoFX/closeup/LiftedPlaces.h>
+
 #include <osg/BoundingBox>
 
 #include <algorithm>
@@ -184,17 +186,33 @@ const LabelText& NameSet::text(std::size_t name)
     return *text;
 }
 
-bool NameSet::see(std::size_t index, const DeformedView& view, double width, double height, Seen& seen)
+bool NameSet::see(std::size_t index, const DeformedView& view, const LiftedPlaces& lifted, double width,
+                  double height, Seen& seen)
 {
     const MapName& name = _names[index];
     seen.name = seen.label.id = index;
     seen.label.manner = styleOf(name).manner;
     std::vector<osg::Vec2d> pixels;
+    // All of a curve, or none of it, is on a close-up.
     for (const osg::Vec3d& place : name.places)
     {
-        osg::Vec2d pixel;
-        if (!view.project(place, pixel)) return false;
-        pixels.push_back(pixel);
+        const std::optional<LiftedPlaces::Place> up = lifted.of(place);
+        if (!up) break;
+        pixels.emplace_back((up->picture.x() + 1.0) / 2.0 * width, (up->picture.y() + 1.0) / 2.0 * height);
+        seen.drawn.push_back(up->drawn);
+    }
+    const bool onCloseUp = pixels.size() == name.places.size();
+    if (!onCloseUp)
+    {
+        pixels.clear();
+        seen.drawn.clear();
+        for (const osg::Vec3d& place : name.places)
+        {
+            osg::Vec2d pixel;
+            if (!view.project(place, pixel)) return false;
+            pixels.push_back(pixel);
+            seen.drawn.push_back(view.deform(place));
+        }
     }
     if (name.kind == MapName::POINT)
     {
@@ -233,9 +251,7 @@ bool NameSet::see(std::size_t index, const DeformedView& view, double width, dou
         seen.label.size = high - low + half * 2.0;
     }
     if (!(seen.label.size.x() > 0.0)) return false;
-    for (const osg::Vec3d& place : name.places)
-        seen.drawn.push_back(view.deform(place));
-    if (_contextImportance > -HUGE_VAL && !(name.importance >= _contextImportance))
+    if (!onCloseUp && _contextImportance > -HUGE_VAL && !(name.importance >= _contextImportance))
     {
         const osg::Vec3d& middle = name.places[name.places.size() / 2];
         seen.label.visible = view.chain().style(middle * view.modelView()) < 0.5;
@@ -258,9 +274,12 @@ std::size_t NameSet::placesShown(const Seen& seen,
     return static_cast<std::size_t>(count);
 }
 
-std::vector<NameSet::Seen> NameSet::inPicture(const DeformedView& view, double width, double height,
-                                              std::size_t most)
+std::vector<NameSet::Seen> NameSet::inPicture(EffectScene& scene, const osg::Matrixd& viewMatrix,
+                                              const osg::Matrixd& projection, double width, double height,
+                                              std::size_t most, double time)
 {
+    const DeformedView view(scene, viewMatrix, projection, width, height);
+    const LiftedPlaces lifted(scene, viewMatrix, projection, time);
     std::vector<Seen> found;
     if (_tree.empty()) return found;
     if (_texts.size() > mostTexts) _texts.clear();
@@ -278,13 +297,13 @@ std::vector<NameSet::Seen> NameSet::inPicture(const DeformedView& view, double w
         if (branchIndex == 0)
         {
             Seen seen;
-            if (!see(first, view, width, height, seen)) continue;
+            if (!see(first, view, lifted, width, height, seen)) continue;
             visible += seen.label.visible ? 1 : 0;
             found.push_back(std::move(seen));
             continue;
         }
         const Branch& branch = _tree[branchIndex - 1];
-        if (!view.maySee(branch.ball)) continue;
+        if (!view.maySee(branch.ball) && !lifted.mayHave(branch.ball)) continue;
         for (const std::size_t name : branch.names)
             queue.push({name, 0});
         if (!branch.names.empty()) continue;

@@ -24,6 +24,8 @@
 namespace osgGeoFX
 {
 
+class LiftedPlaces;
+
 /// How names of one kind are drawn. A plain value.
 /// @ingroup labels
 struct NameStyle
@@ -78,9 +80,11 @@ public:
         /// Where the name's places are drawn, world coordinates.
         std::vector<osg::Vec3d> drawn;
     };
-    /** The names whose places lie in the picture of a view, `width` × `height` pixels, the most important ones first.
-        `most`: how many visible ones at most. All are taken to be visible but those that setContextImportance() leaves out. */
-    std::vector<Seen> inPicture(const DeformedView& view, double width, double height, std::size_t most);
+    /** The names whose places lie in a camera's picture, `width` × `height` pixels, the most important ones first. Names of a region that a
+        close-up shows are on the close-up. `most`: how many visible ones at most. All are taken to be visible but those that
+        setContextImportance() leaves out. `time`: the simulation time, seconds, which moves close-ups. */
+    std::vector<Seen> inPicture(EffectScene& scene, const osg::Matrixd& view, const osg::Matrixd& projection,
+                                double width, double height, std::size_t most, double time = 0.0);
     /// How many of a name's places are to be seen in the pictures of a view's cameras, or of tiles.
     static std::size_t placesShown(const Seen& seen,
                                    const std::vector<std::shared_ptr<const DepthPicture>>& pictures);
@@ -102,7 +106,8 @@ private:
         std::vector<std::size_t> names;
     };
     std::size_t grow(std::vector<std::size_t> names);
-    bool see(std::size_t name, const DeformedView& view, double width, double height, Seen& seen);
+    bool see(std::size_t name, const DeformedView& view, const LiftedPlaces& lifted, double width,
+             double height, Seen& seen);
 
     std::vector<MapName> _names;
     std::map<std::string, NameStyle> _styles;

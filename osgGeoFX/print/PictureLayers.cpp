@@ -200,8 +200,8 @@ public:
               const std::vector<std::shared_ptr<const DepthPicture>>& depths)
     {
         if (_seen.empty())
-            _seen = _names->inPicture(DeformedView(scene, camera), _plan.width, _plan.height,
-                                      LabelPicture::usualMost);
+            _seen = _names->inPicture(scene, camera.getViewMatrix(), camera.getProjectionMatrix(),
+                                      _plan.width, _plan.height, LabelPicture::usualMost);
         for (const NameSet::Seen& name : _seen)
             _shown[name.name] += NameSet::placesShown(name, depths);
     }

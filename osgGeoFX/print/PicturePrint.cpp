@@ -371,8 +371,8 @@ osg::ref_ptr<osg::Image> PicturePrint::Parts::render()
     osg::ref_ptr<osg::Image> image = _renderer->render(view, 0.0, unused, error);
     if (!image) throw Fault(error);
     if (options.names && _names.empty())
-        _names = options.names->inPicture(DeformedView(*scene.effects, _renderer->camera()), plan.width,
-                                          plan.height, LabelPicture::usualMost);
+        _names = options.names->inPicture(*scene.effects, view, _renderer->camera().getProjectionMatrix(),
+                                          plan.width, plan.height, LabelPicture::usualMost);
     return image;
 }
 

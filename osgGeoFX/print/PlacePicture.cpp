@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/print/PlacePicture.h>
 
+#include <osgGeoFX/closeup/LiftedPlaces.h>
 #include <osgGeoFX/scene/DeformedView.h>
 
 #include <osg/Math>
@@ -78,6 +79,10 @@ PlacePicture::PlacePicture(EffectScene& scene, const osg::Camera& camera,
         part.high.set(0.5 * (high.x() + 1.0) * _width, 0.5 * (high.y() + 1.0) * _height);
         if (part.high.x() > part.low.x() && part.high.y() > part.low.y()) _parts.push_back(std::move(part));
     }
+    const auto lifted =
+        std::make_shared<LiftedPlaces>(scene, camera.getViewMatrix(), camera.getProjectionMatrix());
+    lifted->lookAtGround(scene, static_cast<double>(camera.getLODScale()));
+    _lifted = lifted;
     // Of two cameras that drew the same, the later one counts.
     std::stable_sort(_parts.begin(), _parts.end(),
                      [](const Part& a, const Part& b) { return a.picture->frame > b.picture->frame; });
@@ -123,24 +128,31 @@ std::optional<double> PlacePicture::distanceAt(int x, int y) const
     return seen->eye.length();
 }
 
+std::optional<osg::Vec3d> PlacePicture::groundAt(const Seen& seen) const
+{
+    const DeformationChain& chain = *seen.part->chain;
+    const osg::Vec3d ground = chain.undeform(seen.eye);
+    if (!(ground.length2() < 1e30)) return std::nullopt;
+    // Where a deformation gathers ground in one point, no place is that of the pixel.
+    if (!chain.empty())
+    {
+        const DepthPicture& picture = *seen.part->picture;
+        const osg::Vec2d off = pictureOf(chain.deform(ground), picture.projection) - seen.place;
+        if (!(std::abs(off.x()) * picture.width < 1.0 && std::abs(off.y()) * picture.height < 1.0))
+            return std::nullopt;
+    }
+    return ground * _toWorld;
+}
+
 std::optional<PlacePicture::Place> PlacePicture::at(int x, int y) const
 {
     if (!_reference) return std::nullopt;
     const std::optional<Seen> seen = seenAt(x, y);
     if (!seen) return std::nullopt;
-    const DeformationChain& chain = *seen->part->chain;
-    const osg::Vec3d ground = chain.undeform(seen->eye);
-    if (!(ground.length2() < 1e30)) return std::nullopt;
-    // Where a deformation gathers ground in one point, no place is that of the pixel.
-    if (!chain.empty())
-    {
-        const DepthPicture& picture = *seen->part->picture;
-        const osg::Vec2d off = pictureOf(chain.deform(ground), picture.projection) - seen->place;
-        if (!(std::abs(off.x()) * picture.width < 1.0 && std::abs(off.y()) * picture.height < 1.0))
-            return std::nullopt;
-    }
+    const std::optional<osg::Vec3d> lifted = _lifted->groundOf(seen->eye * _toWorld);
+    const std::optional<osg::Vec3d> ground = lifted ? lifted : groundAt(*seen);
     Place place;
-    if (!_reference->toGeodetic(ground * _toWorld, place.longitude, place.latitude, place.height))
+    if (!ground || !_reference->toGeodetic(*ground, place.longitude, place.latitude, place.height))
         return std::nullopt;
     place.longitude = osg::RadiansToDegrees(place.longitude);
     place.latitude = osg::RadiansToDegrees(place.latitude);

@@ -20,6 +20,8 @@
 namespace osgGeoFX
 {
 
+class LiftedPlaces;
+
 /** Where the pixels of a finished picture lie on the ground.
 
     It goes from the depths that were drawn back through the deformation. So it knows what DeformedView::pick() knows, for all
@@ -27,7 +29,7 @@ namespace osgGeoFX
     line of sight it is as exact as the depth buffer: within a few metres in most pictures, and within the height of half a pixel with
     multisampling, which keeps the depth of one sample.
 
-    What stands above the ground counts as drawn, as long as it writes depths: strokes of panorama maps do, and have the place where
+    A pixel of a close-up has the place of the ground that the close-up shows. What else stands above the ground counts as drawn, as long as it writes depths: strokes of panorama maps do, and have the place where
     they stand and the height of their point. A pick looks through them; WithoutStrokes draws such depths.
 
     An object keeps the camera, the effects and the depths as they were when it was made. Make it where the scene graph may be read. Threads:
@@ -79,12 +81,15 @@ private:
         osg::Vec3d eye;   ///< as drawn, eye space
     };
     std::optional<Seen> seenAt(int x, int y) const;
+    /// The place of the ground without close-ups, world coordinates.
+    std::optional<osg::Vec3d> groundAt(const Seen& seen) const;
 
     int _width;
     int _height;
     osg::Matrixd _toWorld; ///< from eye space to the frame of the scene's children
     osg::ref_ptr<const Georeference> _reference;
     std::vector<Part> _parts;
+    std::shared_ptr<const LiftedPlaces> _lifted;
 };
 
 /** Switches the strokes of a scene's panorama maps off for its lifetime, so that a frame's depths are those of the ground. Make it between

@@ -71,11 +71,11 @@ std::vector<WebName> WebNames::layOut(NameSet& names, EffectScene& scene) const
     for (int step = 0; step <= lastStep(); ++step)
     {
         const double scale = scaleAt(step);
-        const DeformedView deformed(scene, view, projection, scale * width, scale * height);
         rules.gap = std::clamp(gapShare * scale * height, leastGap, mostGap);
         layout.setRules(rules);
         std::vector<LabelCandidate> candidates;
-        for (const NameSet::Seen& seen : names.inPicture(deformed, scale * width, scale * height, most))
+        for (const NameSet::Seen& seen :
+             names.inPicture(scene, view, projection, scale * width, scale * height, most))
         {
             const auto known = visible.find(seen.name);
             const bool shows =

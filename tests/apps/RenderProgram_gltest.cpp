@@ -125,6 +125,23 @@ TEST_F(RenderProgram, DrawsFromAboveWithViewAndWithEye)
     EXPECT_EQ(bytes("b.png"), bytes("a.png")) << "the same view, told in world coordinates";
 }
 
+// The ground lies at 100 m.
+TEST_F(RenderProgram, AnEyeBelowTheGroundIsTold)
+{
+    PagedScene::write(_folder.path(), PagedScene::Kind::Geocentric);
+    for (const bool below : {true, false})
+    {
+        const ProgramResult result = run({"terrain.osgb", "-o", "a.png", "--size", "160x120", "--view",
+                                          below ? "-157.8,21.4,91,0,-10" : "-157.8,21.4,109,0,-10"});
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        if (below)
+            EXPECT_NE(result.standardError.find("eye is 9 m below the ground"), std::string::npos)
+                << result.standardError;
+        else
+            EXPECT_EQ(result.standardError, "");
+    }
+}
+
 TEST_F(RenderProgram, SameCommandGivesSameBytesInEachFormat)
 {
     PagedScene::write(_folder.path(), PagedScene::Kind::Geocentric);

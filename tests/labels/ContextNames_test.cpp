@@ -98,10 +98,14 @@ TEST_F(ContextNames, ThoseLeftOutTakeNoNumberFromOthers)
         many.push_back(nameOf("Far " + std::to_string(i), 50.0, 1100.0 + i, 4.0 * i));
     many.push_back(nameOf("Near", 1.0, 300.0, 0.0));
     const osg::ref_ptr<NameSet> set = new NameSet(many);
-    const DeformedView view(*scene, *camera);
-    EXPECT_EQ(set->inPicture(view, 800.0, 600.0, 40).size(), 40u);
+    const auto inPicture = [&]
+    {
+        return set->inPicture(*scene, camera->getViewMatrix(), camera->getProjectionMatrix(), 800.0, 600.0,
+                              40);
+    };
+    EXPECT_EQ(inPicture().size(), 40u);
     set->setContextImportance(60.0);
-    const std::vector<NameSet::Seen> seen = set->inPicture(view, 800.0, 600.0, 40);
+    const std::vector<NameSet::Seen> seen = inPicture();
     ASSERT_EQ(seen.size(), 51u);
     EXPECT_EQ(std::count_if(seen.begin(), seen.end(), [](const auto& each) { return each.label.visible; }),
               1);

@@ -2,9 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Names over a live picture: those of places that are in sight, where these are drawn, and no others.
+#include <osgGeoFX/closeup/CloseUpPicking.h>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/labels/LabelPicture.h>
 #include <osgGeoFX/labels/MapLabels.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/DeformedView.h>
@@ -379,6 +381,64 @@ TEST_F(MapLabelsTest, NamesFollowCurves)
                         static_cast<int>(label.corner.y()) - 2,
                         static_cast<int>(label.corner.y() + label.size.y()) + 3),
               ink);
+}
+
+// As lines do. Ground that a close-up hides has no name, and neither has ground that is hidden on the close-up itself.
+TEST_F(MapLabelsTest, NamesOfALiftedRegionRideOnTheCloseUp)
+{
+    const osg::ref_ptr<CloseUp> closeUp = makeCloseUp({150.0, 100.0}, 500.0, 350.0);
+    _closeUps->addCloseUp(closeUp);
+    _scene->addEffect(_closeUps);
+    // From above the close-up.
+    look({100.0, -1500.0, 1100.0}, {0.0, 0.0, 100.0});
+    drawSettled();
+    const osg::Camera& camera = *viewer().getCamera();
+    const DeformedView view(*_scene, camera);
+    int riding = 0, picked = 0, others = 0;
+    for (const MapLabels::Shown& shown : _labels->shown(camera))
+    {
+        const osg::Vec3d& place = _names->names()[shown.name].places.front();
+        const double x = place.x() - 150.0, y = place.y() - 100.0;
+        const osg::Vec2d anchor = shown.label.anchor;
+        const auto hit = pickCloseUp(*_scene, *_closeUps, camera, anchor.x(), anchor.y());
+        osg::Vec2d expected;
+        if (std::max(std::abs(x), std::abs(y)) < 240.0)
+        {
+            ++riding;
+            expected = projectCloseUp(*_scene, *closeUp, camera, place).value();
+            // A name stands above the ground, so that of the farthest edge lies beside the close-up in the picture.
+            if (hit)
+            {
+                ++picked;
+                EXPECT_FALSE(hit->onRegion) << shown.name;
+                EXPECT_LT((hit->world - place).length(), 40.0) << shown.name;
+            }
+        }
+        else if (std::max(std::abs(x), std::abs(y)) > 260.0)
+        {
+            ++others;
+            ASSERT_TRUE(view.project(place, expected));
+            EXPECT_TRUE(!hit || hit->onRegion) << shown.name;
+        }
+        else
+            continue;
+        EXPECT_LT((anchor - expected).length(), 0.1) << shown.name;
+    }
+    EXPECT_GT(riding, 5);
+    EXPECT_GE(picked, riding - 3);
+    EXPECT_GT(others, 10);
+    // One picture has the same.
+    const LabelPicture picture(*_names, *_scene, camera, {});
+    int onCloseUp = 0;
+    for (const LabelPicture::Name& name : picture.placed())
+    {
+        const osg::Vec3d& place = _names->names()[name.name].places.front();
+        if (std::max(std::abs(place.x() - 150.0), std::abs(place.y() - 100.0)) > 240.0) continue;
+        ++onCloseUp;
+        EXPECT_LT((name.label.anchor - projectCloseUp(*_scene, *closeUp, camera, place).value()).length(),
+                  0.1);
+    }
+    EXPECT_GT(onCloseUp, 5);
 }
 
 // Landmarks alone keep their names in the context of a bend, in a live picture, too.

@@ -3,6 +3,8 @@
 //
 // The places of a picture's pixels against picking, and back to their pixels: plain, bent and as a panorama map, on a plane and on
 // the globe, in several parts, in tiles, with samples, and with depths of other kinds.
+#include <osgGeoFX/closeup/CloseUpPicking.h>
+#include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
@@ -196,6 +198,50 @@ TEST_P(PlacesOnGround, AgreeWithPicking)
         EXPECT_GE(found.ground + found.sky, found.asked - 2);
         EXPECT_TRUE(!effect || found.sky > 3) << "beyond the horizon";
         EXPECT_FALSE(places().at(-1, 5) || places().at(5, HEIGHT) || places().distanceAt(WIDTH, 5));
+    }
+}
+
+// On a close-up it is the ground that the close-up shows, in the region and elsewhere that of the pick.
+TEST_P(PlacesOnGround, OfCloseUpsIsTheGroundThatTheyShow)
+{
+    for (const double scaleHeight : {1.5, 0.0})
+    {
+        const osg::ref_ptr<CloseUp> closeUp = new CloseUp;
+        if (_globe)
+            closeUp->getRegion()->setGeodeticCenter(0.4, 0.65);
+        else
+            closeUp->getRegion()->setCenter(osg::Vec2d());
+        closeUp->getRegion()->setSize(5000.0, 5000.0);
+        closeUp->setOffset(osg::Vec3d(0.0, 0.0, 2500.0));
+        closeUp->setScale(1.5, 1.5, scaleHeight);
+        const osg::ref_ptr<CloseUps> closeUps = new CloseUps;
+        closeUps->addCloseUp(closeUp);
+        draw(closeUps, true);
+        const PlacePicture places = this->places();
+        int lifted = 0, ground = 0, wrong = 0;
+        for (int y = 4; y < HEIGHT; y += 6)
+            for (int x = 4; x < WIDTH; x += 6)
+            {
+                const osg::Vec2d pixel(x + 0.5, HEIGHT - y - 0.5);
+                const auto place = places.at(x, y);
+                const auto hit =
+                    pickCloseUp(*_scene->effects, *closeUps, _renderer->camera(), pixel.x(), pixel.y());
+                const DeformedView view(*_scene->effects, _renderer->camera());
+                const auto below = view.pick(pixel.x(), pixel.y());
+                const bool onCloseUp = hit && !hit->onRegion;
+                if (!place || (!onCloseUp && !below)) continue;
+                osg::Vec3d world;
+                ASSERT_TRUE(_reference->toWorld(osg::DegreesToRadians(place->longitude),
+                                                osg::DegreesToRadians(place->latitude), place->height,
+                                                world));
+                const osg::Vec3d expected = onCloseUp ? hit->world : below->world;
+                ++(onCloseUp ? lifted : ground);
+                wrong += (world - expected).length() > 150.0;
+            }
+        EXPECT_GT(lifted, 60) << scaleHeight;
+        EXPECT_GT(ground, 300) << scaleHeight;
+        // At the close-up's border a pixel may show either.
+        EXPECT_LE(wrong, lifted / 20) << scaleHeight;
     }
 }
 

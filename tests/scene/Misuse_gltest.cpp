@@ -370,10 +370,11 @@ TEST_F(Misuse, EachIsToldInOneSentenceOnce)
              all->addChild(makeGround());
              const osg::ref_ptr<osg::Image> map = new osg::Image;
              map->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+             const osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(map);
+             // What a database's tiles have there for shaders is no map.
+             if (wrong) texture->setName("geofx classes");
              // Some may be without.
-             if (!wrong)
-                 all->getChild(1)->getOrCreateStateSet()->setTextureAttributeAndModes(
-                     1, new osg::Texture2D(map));
+             all->getChild(1)->getOrCreateStateSet()->setTextureAttributeAndModes(1, texture);
              return sceneOf(effect, all);
          }},
         {"GEOFX_RIGID is in force",

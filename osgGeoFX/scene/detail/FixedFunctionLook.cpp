@@ -426,8 +426,11 @@ FixedFunctionLook FixedFunctionState::look(int mapUnit) const
     }
     const osg::Texture* normals = texture2D(_attributes[Image + 3 * TileNormals::unit]);
     look.normalMap = normals && normals->getName() == TileNormals::texture;
-    look.map = mapUnit >= 0 && mapUnit < FixedFunctionLook::units &&
-               texture2D(_attributes[Image + 3 * static_cast<unsigned int>(mapUnit)]);
+    const osg::Texture* map = mapUnit >= 0 && mapUnit < FixedFunctionLook::units
+                                  ? texture2D(_attributes[Image + 3 * static_cast<unsigned int>(mapUnit)])
+                                  : nullptr;
+    // What a database's tiles have for shaders is no map.
+    look.map = map && map->getName().rfind("geofx ", 0) != 0;
     return look;
 }
 
