@@ -129,12 +129,12 @@ private:
     const MappingRasterRequest& read(const ScenePlace& place, const SceneMapping::Raster& raster)
     {
         const auto [known, isNew] = _rasters.emplace(
-            std::make_tuple(osgDB::getRealPath(raster.file.path), raster.kind, raster.maxSide,
-                            raster.bands ? raster.bands->channels[0].range : std::nullopt),
+            std::make_tuple(osgDB::getRealPath(raster.file.path), raster.file.variable, raster.kind,
+                            raster.maxSide, raster.bands ? raster.bands->channels[0].range : std::nullopt),
             MappingRasterRequest());
         MappingRasterRequest& request = known->second;
         if (!isNew) return request;
-        request.file = raster.file.path;
+        request.file = raster.file.name();
         request.options.kind = raster.kind;
         request.options.maxSide = _terrain.sideWithin(raster.file, raster.maxSide);
         if (raster.bands) request.options.bands = *raster.bands;
@@ -163,7 +163,7 @@ private:
     void add(const SceneSequence& each)
     {
         SceneSequenceRequest request;
-        request.file = each.file.path + (each.variable.empty() ? "" : ":" + each.variable);
+        request.file = each.file.name();
         request.globe = _ellipsoid != nullptr;
         request.wkt = _terrain.frame().wkt;
         // Some steps are in memory at a time.
@@ -319,7 +319,7 @@ private:
     EffectScene& _node;
     const osg::EllipsoidModel* _ellipsoid;
     bool _hasOrigin;
-    using RasterKey = std::tuple<std::string, std::optional<DataLayer::Kind>, int,
+    using RasterKey = std::tuple<std::string, std::string, std::optional<DataLayer::Kind>, int,
                                  std::optional<std::pair<double, double>>>;
     std::map<RasterKey, MappingRasterRequest> _rasters;
 };

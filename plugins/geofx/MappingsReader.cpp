@@ -62,7 +62,6 @@ private:
         SceneSequence sequence;
         sequence.place = _xml.place(node);
         sequence.file = _xml.path(node, "file");
-        sequence.variable = attributeOf(node, "variable");
         sequence.maxSide = SceneXml::integer(node, "maxSide");
         sequence.blending = attributeOf(node, "blending") != "false" && attributeOf(node, "blending") != "0";
         if (isGiven(node, "speed")) sequence.speed = SceneXml::real(node, "speed");
@@ -140,8 +139,8 @@ private:
         result.mapping = new ProjectiveMapping;
         ProjectiveMapping& mapping = *result.mapping;
         _xml.set(mapping, node,
-                 {"layer", "mask", "table", "transfer", "file", "kind", "maxSide", "stretch", "west", "south",
-                  "east", "north", "longitude", "latitude"});
+                 {"layer", "mask", "table", "transfer", "file", "variable", "kind", "maxSide", "stretch",
+                  "west", "south", "east", "north", "longitude", "latitude"});
         mapping.setLayer(findNamed(_xml, node, "layer", _layers, "layer"));
         mapping.setMask(findNamed(_xml, node, "mask", _layers, "layer"));
         mapping.setTable(findNamed(_xml, node, "table", _tables, "colorTable"));

@@ -41,6 +41,10 @@ struct ScenePath
     std::string path;
     ScenePlace place;
     std::string attribute;
+    std::string variable = {}; ///< of a raster; empty: the file decides
+
+    /// As readers of rasters take it: "FILE" or "FILE:VARIABLE".
+    std::string name() const { return variable.empty() ? path : path + ":" + variable; }
 };
 
 /// Red, green, blue, 0…1.
@@ -151,7 +155,6 @@ struct SceneSequence
 {
     ScenePlace place;
     ScenePath file;
-    std::string variable;                    ///< empty: the first one
     osg::ref_ptr<ProjectiveMapping> mapping; ///< without its place and its layer
     bool hasTransfer = false;
     int maxSide = 0;

@@ -87,7 +87,8 @@ ScenePath SceneXml::path(xmlNode* node, const char* attribute) const
 {
     const std::string text = attributeOf(node, attribute);
     const bool isAddress = text.find("://") != std::string::npos;
-    return {isAddress ? text : joined(text), place(node), attribute};
+    return {isAddress ? text : joined(text), place(node), attribute,
+            std::string(attribute) == "file" ? attributeOf(node, "variable") : ""};
 }
 
 std::vector<ScenePath> SceneXml::paths(xmlNode* parent, const char* name) const

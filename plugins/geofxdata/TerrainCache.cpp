@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "TerrainCache.h"
 
-#include <osgGeoFX/terrain/ProgressLine.h>
-
+#include <osgGeoFX/geodata/SequenceRaster.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/terrain/BuilderCode.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
+#include <osgGeoFX/terrain/ProgressLine.h>
 
 #include <gdal_priv.h>
 
@@ -50,15 +50,15 @@ BuildOptions buildOptions(const SceneRasters& rasters)
                                                       {"egm96", VerticalDatum::Egm96}};
     BuildOptions options;
     for (const ScenePath& dem : rasters.dems)
-        options.dems.push_back(dem.path);
+        options.dems.push_back(dem.name());
     for (const ScenePath& imagery : rasters.imagery)
-        options.imagery.push_back(imagery.path);
+        options.imagery.push_back(imagery.name());
     if (rasters.landCover)
     {
-        options.landCover = rasters.landCover->file.path;
+        options.landCover = rasters.landCover->file.name();
         options.landCoverTable = rasters.landCover->table.path;
     }
-    if (rasters.treeCover) options.treeCover = rasters.treeCover->path;
+    if (rasters.treeCover) options.treeCover = rasters.treeCover->name();
     options.epsg = rasters.epsg;
     options.vertical = datums.at(rasters.vertical);
     options.voids = rasters.voids == "keep" ? Voids::KEEP : Voids::FILL;
@@ -75,9 +75,11 @@ BuildOptions buildOptions(const SceneRasters& rasters)
 
 /// Name, size and time of a file and, for a raster, of the files that belong to it (those of a VRT, a world
 /// file…).
-void describe(std::ostream& text, const std::string& file, bool isRaster)
+void describe(std::ostream& text, const std::string& name, bool isRaster)
 {
     CPLStringList files;
+    const auto [file, variable] = isRaster ? SequenceRaster::parse(name) : std::pair(name, std::string());
+    text << variable << "\n";
     if (isRaster)
     {
         const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler); // the builder says it better

@@ -234,6 +234,44 @@ TEST_F(GeofxData, RastersAreBuiltOnceAndAgainWhenTheyChange)
     EXPECT_EQ(databasesIn(folder / "cache").size(), 4u);
 }
 
+TEST_F(GeofxData, ATableOfAFileIsARasterOfItsOwn)
+{
+    const TempDir folder;
+    writeDem(folder / "dem.tif");
+    GDALDataset* const dem = GDALDataset::Open((folder / "dem.tif").c_str(), GDAL_OF_RASTER);
+    ASSERT_TRUE(dem);
+    const auto append = [&](const char* table)
+    {
+        const std::string name = std::string("RASTER_TABLE=") + table;
+        const std::array<const char*, 4> options = {name.c_str(), "APPEND_SUBDATASET=YES", "TILE_FORMAT=TIFF",
+                                                    nullptr};
+        GDALClose(GetGDALDriverManager()->GetDriverByName("GPKG")->CreateCopy(
+            (folder / "all.gpkg").c_str(), dem, FALSE,
+            const_cast<char**>(fs::exists(folder / "all.gpkg") ? options.data() : options.data() + 2),
+            nullptr, nullptr));
+    };
+    append("all");
+    append("ground");
+    const auto scene = [&](const std::string& table)
+    {
+        return folder
+            .write("a.geofx",
+                   "<geofx version='1'><terrain><rasters cache='cache'><dem file='all.gpkg' variable='" +
+                       table + "'/></rasters></terrain></geofx>")
+            .string();
+    };
+    ASSERT_TRUE(osgDB::readRefNodeFile(scene("ground")));
+    EXPECT_EQ(databasesIn(folder / "cache").size(), 1u);
+    ASSERT_TRUE(osgDB::readRefNodeFile(scene("all")));
+    EXPECT_EQ(databasesIn(folder / "cache").size(), 2u) << "each table is another source";
+    // A file that changed is, too.
+    fs::last_write_time(folder / "all.gpkg",
+                        fs::last_write_time(folder / "all.gpkg") - std::chrono::hours(1));
+    ASSERT_TRUE(osgDB::readRefNodeFile(scene("all")));
+    EXPECT_EQ(databasesIn(folder / "cache").size(), 3u);
+    GDALClose(dem);
+}
+
 TEST_F(GeofxData, SunOfRastersStandsOverTheirMiddle)
 {
     const TempDir folder;

@@ -468,7 +468,7 @@ TEST_F(SceneMappingsPlugin, PicturesMayBeStretched)
     {
         const std::string message = messageOf(
             _folder.write("x.geofx", sceneWith("<raster file='p.tif' stretch='" + stretch + "'/>")));
-        EXPECT_NE(message.find("two different numbers with a comma between them"), std::string::npos)
+        EXPECT_NE(message.find("with a comma between them"), std::string::npos)
             << message;
     }
 }
@@ -578,6 +578,40 @@ TEST_F(SceneMappingsPlugin, HugePicturesAreReducedOrRefused)
         EXPECT_EQ(image->s(), 2048);
         EXPECT_EQ(image->t(), 2016);
     }
+}
+
+TEST_F(SceneMappingsPlugin, AVariableOfAFileIsNamedBesideIt)
+{
+    setTerrain(0);
+    GDALAllRegister();
+    for (const auto& [name, value] : {std::pair("two", 10.0), std::pair("high", 20.0)})
+    {
+        geofx::test::TestRaster raster(8, 8);
+        raster.placed(-158.0, 21.31, 0.001, 0.001).crs("EPSG:4326");
+        raster.fill([height = value](int, int, int) { return height; });
+        const std::string table = std::string("RASTER_TABLE=") + name;
+        const std::array<const char*, 4> options = {table.c_str(), "APPEND_SUBDATASET=YES",
+                                                    "TILE_FORMAT=TIFF", nullptr};
+        const geofx::test::DatasetPtr copy(GetGDALDriverManager()->GetDriverByName("GPKG")->CreateCopy(
+            (_folder / "two.gpkg").c_str(), &raster.dataset(), FALSE,
+            const_cast<char**>(std::string(name) == "two" ? options.data() + 3 : options.data()), nullptr,
+            nullptr));
+        ASSERT_TRUE(copy);
+    }
+    auto* const effect = effectOf<ProjectiveMappings>(
+        sceneWith("<raster file='two.gpkg' variable='two' kind='value'/><raster file='two.gpkg' "
+                  "variable='high' kind='value'/>"));
+    ASSERT_TRUE(effect);
+    ASSERT_EQ(effect->getNumMappings(), 2u);
+    for (unsigned int i = 0; i < 2; ++i)
+    {
+        const osg::Image& image = *effect->getMapping(i)->getLayer()->getImage();
+        EXPECT_EQ(*reinterpret_cast<const float*>(image.data(4, 4)), i == 0 ? 10.0f : 20.0f);
+    }
+    std::string message;
+    _watch.messagesOf([&] { message = messageWith("<raster file='two.gpkg' variable='deep'/>"); });
+    EXPECT_NE(message.find("<raster>: "), std::string::npos) << message;
+    EXPECT_NE(message.find("deep"), std::string::npos) << message;
 }
 
 TEST_F(SceneMappingsPlugin, MistakesAreNamedWithPlaceAndMend)
