@@ -247,13 +247,45 @@ private:
 
     using Take = std::function<void(const MappingFrame&, const std::optional<MappingRaster::Window>&)>;
 
-    /// Adds the overlay, which `take` fills for a frame; or six parts of one that reaches around the globe.
-    void addParts(const GroundReach& reach, const std::string& name, GroundOverlay& overlay, const Take& take)
+    /// Around ground that is smaller than this, metres, a raster around the globe is cut out.
+    static constexpr double mostReach = 2e6, leastReach = 1e3;
+
+    bool hasSmallGround() const { return _options.ground.valid() && _options.ground.radius() < mostReach; }
+
+    LocalOrigin middleOfGround() const
+    {
+        const osg::EllipsoidModel earth;
+        const osg::Vec3d& middle = _options.ground.center();
+        double latitude = 0.0, longitude = 0.0, height = 0.0;
+        earth.convertXYZToLatLongHeight(middle.x(), middle.y(), middle.z(), latitude, longitude, height);
+        return LocalOrigin::onGlobe(longitude, latitude);
+    }
+
+    /// TiledRaster's reach for a part of a raster around the globe; 0 for a sixth.
+    static double reachAround(const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
+    {
+        return window && !CubeFace::isOrigin(frame.origin) ? window->high.x() : 0.0;
+    }
+
+    /// Adds the overlay, which `take` fills for a frame. A raster that reaches around the globe becomes six parts, or, if `mayBeCut`, one around
+    /// the ground where that is small.
+    void addParts(const GroundReach& reach, const std::string& name, GroundOverlay& overlay, const Take& take,
+                  bool mayBeCut = false)
     {
         if (!isTooLarge(reach))
         {
             overlay.frame = frameFor(reach, name);
             take(frameOf(overlay.frame), std::nullopt);
+            add(overlay);
+            return;
+        }
+        if (mayBeCut && hasSmallGround())
+        {
+            MappingFrame frame = frameOf(frames.size());
+            frame.origin = middleOfGround();
+            const double half = std::max(1.05 * _options.ground.radius(), leastReach);
+            take(frame, MappingRaster::Window{{-half, -half}, {half, half}, reach.texel});
+            overlay.frame = frameAt(frame.origin, name);
             add(overlay);
             return;
         }
@@ -264,6 +296,7 @@ private:
         window.texel = reach.texel;
         for (const LocalOrigin& origin : CubeFace::origins())
         {
+            if (!CubeFace::mayHave(origin, _options.ground)) continue;
             MappingFrame frame = frameOf(frames.size());
             frame.origin = origin;
             take(frame, window);
@@ -338,7 +371,7 @@ private:
             if (window)
                 options.window->texel =
                     std::min(window->texel, (window->high.x() - window->low.x()) / leastSide);
-            if (_options.paged) overlay.tiles = tilesIn(frame, options.maxSide);
+            if (_options.paged) overlay.tiles = tilesIn(frame, reachAround(frame, window), options.maxSide);
             const std::optional<MappingRaster> raster = MappingRaster::read(_raster, frame, options, error);
             if (!raster) throw BuildError(error);
             const osg::Vec2d& low = raster->low;
@@ -348,7 +381,7 @@ private:
             overlay.lowest = raster->lowest;
             overlay.highest = raster->highest;
         };
-        addParts(reach, _raster, overlay, take);
+        addParts(reach, _raster, overlay, take, true);
         giveColors(before);
         notices.insert(notices.end(), _sld.notices.begin(), _sld.notices.end());
     }
@@ -454,12 +487,13 @@ private:
         return _placers[frame](degrees);
     }
 
-    /// Null for a raster that is small enough. With tiles, a coarse picture is enough for the rest.
-    osg::ref_ptr<RasterTiles> tilesIn(const MappingFrame& frame, int& maxSide)
+    /// Null for a raster that is small enough. With tiles, a coarse picture is enough for the rest. `reach`: TiledRaster's.
+    osg::ref_ptr<RasterTiles> tilesIn(const MappingFrame& frame, double reach, int& maxSide)
     {
-        constexpr int coarse = 512;
+        // A service's tiles are dear.
+        const int coarse = reach > 0.0 ? 256 : 512;
         std::string error;
-        osg::ref_ptr<RasterTiles> tiles = TiledRaster::open(_raster, frame, _kind, error, _bands);
+        osg::ref_ptr<RasterTiles> tiles = TiledRaster::open(_raster, frame, _kind, error, _bands, reach);
         if (!tiles)
         {
             // What cannot be read at all says so below.

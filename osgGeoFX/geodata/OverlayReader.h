@@ -22,7 +22,8 @@ namespace osgGeoFX
     On a globe, rasters near each other share a frame. A raster gets a frame of its own where its texels are too small for the
     distance (float has 24 bits) or where it lies more than 60° of arc away; there are at most seven frames. So corners lie
     exactly anywhere on the globe, over the antimeridian and at the poles, too. A raster that reaches farther than 60° of arc around its middle, up to all of the
-    globe, becomes six overlays, each in a frame of its own, which overlap by some texels.
+    globe, becomes six overlays, each in a frame of its own, which overlap by some texels; or, if Options::ground is smaller than 2,000 km, one overlay
+    around the ground.
 
     One thread at a time; several readers may read at once.
     @ingroup geodata */
@@ -46,6 +47,9 @@ public:
         /// Of a file's overlays together, a picture that several of them show counted once; those that come later are left out, with a
         /// notice. 2^27 texels have 512 MiB.
         double maxTexels = 134217728.0;
+        /// Around the ground of a globe, Earth-centered coordinates, metres. The parts of a raster around the globe that lie beside it are
+        /// left out. An invalid sphere is all of the globe.
+        osg::BoundingSphered ground = {};
         /// Of KML: the pictures that were read before, which are not read again; grows. Null: those of one file are shared.
         OverlayRaster::Pictures* pictures = nullptr;
     };

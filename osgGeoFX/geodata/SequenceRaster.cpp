@@ -167,12 +167,7 @@ std::vector<LocalOrigin> originsOf(const MappingFrame& frame, bool moves, bool i
     if (!isAround) return {frame.origin};
     const std::array<LocalOrigin, 6> all = CubeFace::origins();
     if (moves) return {all.begin(), all.end()};
-    const bool isSixth = std::any_of(all.begin(), all.end(),
-                                     [&](const LocalOrigin& each) {
-                                         return each.longitude == frame.origin.longitude &&
-                                                each.latitude == frame.origin.latitude;
-                                     });
-    if (!isSixth)
+    if (!CubeFace::isOrigin(frame.origin))
         throw BuildError(file +
                          ": it reaches around the globe, and a frame whose origin is given has no room for "
                          "it; show it with "

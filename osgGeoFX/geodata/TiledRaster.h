@@ -22,10 +22,12 @@ namespace osgGeoFX
 struct OSGGEOFXDATA_EXPORT TiledRaster
 {
     /// Null, with a sentence in `error` that names file and remedy, if the file cannot be used. `kind`: empty if the file decides.
-    /// `bands`: what is shown.
+    /// `bands`: what is shown. `reach`: half of the side of a square around the frame's origin, metres; the tiles are those of the square. 0: of
+    /// all of the raster.
     static osg::ref_ptr<RasterTiles> open(const std::string& file, const MappingFrame& frame,
                                           std::optional<DataLayer::Kind> kind, std::string& error,
-                                          const std::optional<RasterBands>& bands = std::nullopt);
+                                          const std::optional<RasterBands>& bands = std::nullopt,
+                                          double reach = 0.0);
 };
 
 } // namespace osgGeoFX

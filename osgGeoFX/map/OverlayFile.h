@@ -6,6 +6,8 @@
 #include <osgGeoFX/effect/LocalOrigin.h>
 #include <osgGeoFX/mapping/GroundOverlay.h>
 
+#include <osg/BoundingSphere>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +28,7 @@ struct OSGGEOFXMAPS_EXPORT OverlayFile
     int maxSide = 2048;                  ///< texels along the longer side of a raster, 1…16384
     bool paged = false;                  ///< OverlayReader::Options::paged
     bool globe = true;                   ///< the terrain is one
+    osg::BoundingSphered ground;         ///< OverlayReader::Options::ground
     std::string wkt;                     ///< the coordinate system of a projected terrain
     std::vector<LocalOrigin> frames;     ///< those that there are; grows
     std::vector<GroundOverlay> overlays; ///< what was read, the lowest first

@@ -61,6 +61,7 @@ bool SceneOverlays::add(const std::string& file, const Options& options, std::ve
         request.frames.push_back(effect->getLocalOrigin());
     const osg::BoundingSphere bound = _node.getBound();
     const osg::BoundingSphered ground(bound.center(), static_cast<double>(bound.radius()));
+    if (request.globe) request.ground = ground;
     if (!request.read(error)) return false;
 
     const osg::ref_ptr<const osg::EllipsoidModel> ellipsoid = _scene->ground().ellipsoid;

@@ -31,6 +31,8 @@ struct LayerSource
     };
     std::optional<Vectors> vectors;   ///< nothing for rasters
     std::optional<RasterBands> bands; ///< of rasters: what is shown; nothing if the file decides
+    /// Of tiles of a raster: half of the side of the square around the origin that they show, metres; 0: all.
+    double reach = 0.0;
 };
 
 } // namespace osgGeoFX

@@ -33,15 +33,19 @@ constexpr std::uint64_t patience = 120;
 /// A view that needs too many tiles is coarser by such factors.
 constexpr double coarserBy = 1.41421356; // in each step
 constexpr int mostCoarser = 24;
-/// Between what is in memory and what is needed, every second level is read.
-constexpr int levelStep = 2;
+/// Between what is in memory and what is needed, every third level is read.
+constexpr int levelStep = 3;
+/// Texels may be so much larger than a picture needs them, for pages have fixed sizes, and the next finer ones are four times as many. Not those
+/// of a raster that draws itself.
+constexpr double mostTexel = 1.2;
 /// Texels along the longer side of the coarse picture.
-constexpr int coarseSide = 512;
+constexpr int coarseSide = 256;
 
 /// What a PageCut asks, for one raster.
 class TileSight final : public PageSight
 {
 public:
+    /// `scale`: how much larger texels may be than the picture needs them.
     TileSight(PageSight& sight, const PlaneBox& extent, double texel, double scale)
         : _sight(sight), _extent(extent), _texel(texel), _scale(scale)
     {
@@ -132,7 +136,8 @@ public:
         PageCut maker;
         const auto cutAt = [&](int step) -> Cut
         {
-            TileSight own(sight, _extent, _texel, std::pow(coarserBy, step));
+            TileSight own(sight, _extent, _texel,
+                          std::pow(coarserBy, step) * (_tiles->hasLengthsInPixels() ? 1.0 : mostTexel));
             return maker.make(seen, own, _most);
         };
         int step = 0;

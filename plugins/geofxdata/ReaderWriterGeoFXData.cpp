@@ -205,6 +205,7 @@ private:
         {
             how.allowOutside = request->allowOutside;
             how.paged = request->paged;
+            how.ground = request->ground;
         }
         else
         {
@@ -255,9 +256,9 @@ private:
         {
             std::optional<DataLayer::Kind> kind;
             if (source.kind) kind = static_cast<DataLayer::Kind>(*source.kind);
-            request->tiles = source.vectors
-                                 ? TiledVectors::open(source, error)
-                                 : TiledRaster::open(source.file, frame, kind, error, source.bands);
+            request->tiles = source.vectors ? TiledVectors::open(source, error)
+                                            : TiledRaster::open(source.file, frame, kind, error, source.bands,
+                                                                source.reach);
             if (!request->tiles) return error;
         }
         else
@@ -364,7 +365,7 @@ private:
 
     static bool addSurface(SurfaceRequest& request, const SceneSurface& surface, std::string& error)
     {
-        const std::string& file = surface.file.path;
+        const std::string& file = surface.file.name();
         switch (surface.source)
         {
         case SceneSurface::RASTER:

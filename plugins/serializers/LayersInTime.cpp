@@ -28,6 +28,8 @@ namespace
 constexpr int vectorKind = 100;
 /// Is added to the kind of a raster whose bands are written, too.
 constexpr int withBands = 200;
+/// The same, of a raster that is shown around its origin.
+constexpr int withReach = 1000;
 
 void writeBands(osgDB::OutputStream& stream, const RasterBands& bands)
 {
@@ -78,7 +80,8 @@ void writeSource(osgDB::OutputStream& stream, const LayerSource& source)
 {
     stream.writeWrappedString(source.file);
     stream.writeWrappedString(source.wkt);
-    const int kind = source.kind.value_or(-1) + (source.bands ? withBands : 0);
+    const bool hasReach = source.reach > 0.0;
+    const int kind = source.kind.value_or(-1) + (source.bands ? withBands : 0) + (hasReach ? withReach : 0);
     stream << source.globe << source.maxSide << (source.vectors ? vectorKind : kind);
     if (source.vectors)
     {
@@ -88,6 +91,7 @@ void writeSource(osgDB::OutputStream& stream, const LayerSource& source)
     }
     else if (source.bands)
         writeBands(stream, *source.bands);
+    if (!source.vectors && hasReach) stream << exactText(source.reach);
     for (const double number :
          {source.origin.x, source.origin.y, source.origin.longitude, source.origin.latitude})
         stream << exactText(number);
@@ -101,6 +105,8 @@ LayerSource readSource(osgDB::InputStream& stream)
     stream.readWrappedString(source.file);
     stream.readWrappedString(source.wkt);
     stream >> source.globe >> source.maxSide >> kind;
+    const bool hasReach = kind >= withReach - 1;
+    if (hasReach) kind -= withReach;
     const bool hasBands = kind >= withBands - 1;
     if (hasBands) kind -= withBands;
     if (kind >= DataLayer::COLOR && kind <= DataLayer::CLASS) source.kind = kind;
@@ -112,6 +118,7 @@ LayerSource readSource(osgDB::InputStream& stream)
         stream >> source.vectors->allowOutside;
     }
     if (hasBands) source.bands = readBands(stream);
+    if (hasReach) source.reach = std::max(readNumber(stream, "LayerSource"), 0.0);
     for (double* const number :
          {&source.origin.x, &source.origin.y, &source.origin.longitude, &source.origin.latitude})
         *number = readNumber(stream, "LayerSource");

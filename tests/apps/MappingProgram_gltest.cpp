@@ -7,6 +7,8 @@
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
+#include <tools/TestServer.h>
+#include <tools/WebTiles.h>
 
 #include <osg/CoordinateSystemNode>
 #include <osg/Geometry>
@@ -15,6 +17,8 @@
 #include <osgDB/WriteFile>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -41,25 +45,42 @@ protected:
                      });
     }
 
-    /// A dark square around 7° east, 45° north, a tenth of a degree wide.
-    void writeGround() const
+    /// A dark square around 7° east, 45° north, so many degrees wide, in pieces of a twentieth of a degree: their boxes are those of tiles.
+    void writeGround(double size = 0.1) const
     {
-        osg::EllipsoidModel earth;
+        const osg::ref_ptr<osg::CoordinateSystemNode> node =
+            new osg::CoordinateSystemNode("WKT", "EPSG:4326");
+        node->setEllipsoidModel(new osg::EllipsoidModel);
+        constexpr double piece = 0.05;
+        const int pieces = static_cast<int>(std::lround(size / piece));
+        for (int i = 0; i < pieces * pieces; ++i)
+            node->addChild(makeGround(7.0 - size / 2.0 + piece * (i % pieces),
+                                      45.0 - size / 2.0 + piece * (i / pieces), piece));
+        node->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+        osgDB::writeNodeFile(*node, (_folder / "ground.osgt").string());
+    }
+
+    /// A piece, by its south-western corner and its width, degrees.
+    static osg::ref_ptr<osg::Node> makeGround(double west, double south, double size)
+    {
+        const osg::EllipsoidModel earth;
         const osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
         const osg::ref_ptr<osg::DrawElementsUShort> triangles = new osg::DrawElementsUShort(GL_TRIANGLES);
-        osg::Vec3d center;
-        earth.convertLatLongHeightToXYZ(osg::DegreesToRadians(45.0), osg::DegreesToRadians(7.0), 0.0,
-                                        center.x(), center.y(), center.z());
-        constexpr int cells = 20;
+        const auto placeAt = [&](double east, double north)
+        {
+            osg::Vec3d place;
+            earth.convertLatLongHeightToXYZ(osg::DegreesToRadians(south + north * size),
+                                            osg::DegreesToRadians(west + east * size), 0.0, place.x(),
+                                            place.y(), place.z());
+            return place;
+        };
+        const osg::Vec3d center = placeAt(0.5, 0.5);
+        constexpr int cells = 10;
         for (int i = 0; i < (cells + 1) * (cells + 1); ++i)
         {
-            const double x = 6.95 + 0.1 * (i % (cells + 1)) / cells,
-                         y = 44.95 + 0.1 * (i / (cells + 1)) / cells;
-            osg::Vec3d place;
-            earth.convertLatLongHeightToXYZ(osg::DegreesToRadians(y), osg::DegreesToRadians(x), 0.0,
-                                            place.x(), place.y(), place.z());
-            vertices->push_back(osg::Vec3(place - center));
-            if (i % (cells + 1) == cells || i / (cells + 1) == cells) continue;
+            const int column = i % (cells + 1), row = i / (cells + 1);
+            vertices->push_back(osg::Vec3(placeAt(1.0 * column / cells, 1.0 * row / cells) - center));
+            if (column == cells || row == cells) continue;
             for (const int corner : {i, i + 1, i + cells + 2, i, i + cells + 2, i + cells + 1})
                 triangles->push_back(static_cast<GLushort>(corner));
         }
@@ -72,28 +93,24 @@ protected:
         const osg::ref_ptr<osg::MatrixTransform> place =
             new osg::MatrixTransform(osg::Matrix::translate(center));
         place->addChild(ground);
-        place->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
-        const osg::ref_ptr<osg::CoordinateSystemNode> node =
-            new osg::CoordinateSystemNode("WKT", "EPSG:4326");
-        node->setEllipsoidModel(new osg::EllipsoidModel);
-        node->addChild(place);
-        osgDB::writeNodeFile(*node, (_folder / "ground.osgt").string());
+        return place;
     }
 
     ProgramResult run(std::vector<std::string> arguments, const std::string& scene = "ground.osgt") const
     {
-        const std::vector<std::string> usual = {builtProgram("osggeofx_render"),
-                                                scene,
-                                                "--size",
-                                                std::to_string(width) + "x" + std::to_string(height),
-                                                "--view",
-                                                "7,45,5000,0,-90",
-                                                "-o",
-                                                "out.png"};
-        arguments.insert(arguments.begin(), usual.begin(), usual.end());
+        const auto addUnless = [&](const std::string& option, const std::string& value)
+        {
+            if (std::find(arguments.begin(), arguments.end(), option) == arguments.end())
+                arguments.insert(arguments.end(), {option, value});
+        };
+        addUnless("--size", std::to_string(width) + "x" + std::to_string(height));
+        addUnless("--view", "7,45,5000,0,-90");
+        addUnless("-o", "out.png");
+        arguments.insert(arguments.begin(), {builtProgram("osggeofx_render"), scene});
         ProgramOptions options;
         options.folder = _folder.path().string();
-        options.environment = {"DISPLAY=", "LC_ALL=de_DE.UTF-8"};
+        options.environment = {"DISPLAY=", "LC_ALL=de_DE.UTF-8",
+                               "XDG_CACHE_HOME=" + (_folder / "cache").string()};
         return runProgram(arguments, options);
     }
 
@@ -138,6 +155,24 @@ protected:
 
     TempDir _folder;
 };
+
+/// Tiles of the world whose color tells their level, in stripes of eight pixels.
+std::optional<std::string> stripedTile(const std::string& name)
+{
+    static const std::vector<std::string> tiles = []
+    {
+        std::vector<std::string> made;
+        for (int level = 0; level <= 18; ++level)
+            made.push_back(pngTile(
+                [&](int x, int) {
+                    return std::array<int, 4>{12 * level, x / 8 % 2 == 0 ? 250 : 5, 128, 255};
+                }));
+        return made;
+    }();
+    const std::optional<WebTile> tile = WebTile::parse(name);
+    if (!tile || tile->level < 0 || tile->level > 18) return std::nullopt;
+    return tiles[static_cast<std::size_t>(tile->level)];
+}
 
 } // namespace
 
@@ -318,6 +353,95 @@ TEST_F(MappingProgram, VectorDataAreInThePicture)
     };
     EXPECT_NEAR(scene("file=\"area.geojson\" layer=\"area\"").count, ring.count, 3);
     EXPECT_NEAR(scene("file=\"both.geojson\" style=\"point.sld\"").count, point.count, 3);
+}
+
+// The usual description of a service of 18 levels; each request takes 20 ms.
+TEST_F(MappingProgram, AServiceOfTheWorldIsAskedForWhatAViewNeeds)
+{
+    writeGround(0.4);
+    TestServer server(&stripedTile);
+    server.setDelay(std::chrono::milliseconds(20));
+    _folder.write("map.xml", serviceText(server.address(), 18, "<Cache/>"));
+    const auto start = std::chrono::steady_clock::now();
+    const ProgramResult result =
+        run({"--mapping", "map.xml", "--size", "960x640", "--fov", "30", "--view", "7,45,18700,0,-90"});
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    EXPECT_EQ(result.exitCode, 0) << result.standardError;
+    EXPECT_EQ(result.standardError, "");
+    std::vector<std::string> requests = server.requests();
+    std::sort(requests.begin(), requests.end());
+    EXPECT_LE(requests.size(), 80u);
+    EXPECT_TRUE(std::adjacent_find(requests.begin(), requests.end()) == requests.end()) << "one came twice";
+    RecordProperty("requests", static_cast<int>(requests.size()));
+    RecordProperty("seconds", std::to_string(seconds.count()));
+    // 15 km are 960 pixels of 15.6 m; a pixel of the level 12 has 27 m there, one of the level 13 has 13.5 m.
+    const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile((_folder / "out.png").string());
+    ASSERT_TRUE(image);
+    int fine = 0, all = 0;
+    double contrast = 0.0;
+    for (unsigned int y = 20; y < 620; y += 20)
+        for (unsigned int x = 20; x < 900; x += 20)
+        {
+            ++all;
+            const int level = (image->data(x, y)[0] + 6) / 12;
+            if (level >= 12 && level <= 14) ++fine;
+            int least = 255, most = 0;
+            for (unsigned int i = 0; i < 40; ++i)
+            {
+                least = std::min<int>(least, image->data(x + i, y)[1]);
+                most = std::max<int>(most, image->data(x + i, y)[1]);
+            }
+            contrast += most - least;
+        }
+    EXPECT_EQ(fine, all);
+    EXPECT_GT(contrast / all, 180.0) << "its stripes are blurred";
+}
+
+TEST_F(MappingProgram, TilesOfServicesThatFailAreAskedForAgainOrTold)
+{
+    TestServer server(&stripedTile);
+    _folder.write("map.xml", serviceText(server.address(), 18));
+    const std::vector<std::string> view = {"--mapping", "map.xml", "--fov", "30"};
+    const ProgramResult good = run(view);
+    EXPECT_EQ(good.exitCode, 0) << good.standardError;
+    const auto picture = [&]
+    {
+        std::ifstream stream(_folder / "out.png", std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+    };
+    const std::string right = picture();
+    std::string finest;
+    int level = 0;
+    for (const std::string& each : server.requests())
+        if (const auto tile = WebTile::parse(each); tile && tile->level > level)
+        {
+            level = tile->level;
+            finest = each;
+        }
+    ASSERT_GE(level, 12);
+    server.setFault(TestServer::Fault::Busy, finest, 2);
+    const ProgramResult once = run(view);
+    EXPECT_EQ(once.exitCode, 0) << once.standardError;
+    EXPECT_EQ(once.standardError, "");
+    EXPECT_EQ(picture(), right);
+    server.setFault(TestServer::Fault::Busy, finest);
+    std::filesystem::remove(_folder / "out.png");
+    const ProgramResult always = run(view);
+    EXPECT_EQ(always.exitCode, 1) << always.standardError;
+    EXPECT_NE(always.standardError.find(
+                  "osggeofx_render: map.xml: its pixels cannot be read (the server has failed, HTTP "
+                  "503); try again later. A coarser part stands in its place."),
+              std::string::npos)
+        << always.standardError;
+    EXPECT_NE(picture(), "") << "what there is, is drawn";
+    // A wait ends after --timeout.
+    server.setFault(TestServer::Fault::Silent, finest);
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<std::string> waiting = view;
+    waiting.insert(waiting.end(), {"--timeout", "1"});
+    const ProgramResult silent = run(waiting);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(8));
+    EXPECT_EQ(silent.exitCode, 1) << silent.standardError;
 }
 
 TEST_F(MappingProgram, WhatLiesElsewhereIsTold)

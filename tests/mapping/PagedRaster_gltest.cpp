@@ -329,7 +329,7 @@ TEST_F(PagedRasters, OptionsOutOfRangeAreRefused)
     // A program's own tiles may be anything.
     _tiles->format = GL_RGB;
     EXPECT_FALSE(PagedRaster::create(_tiles, {}, error));
-    EXPECT_NE(error.find("is not 512 x 512 pixels of GL_RGBA bytes"), std::string::npos) << error;
+    EXPECT_NE(error.find("is not 256 x 256 pixels of GL_RGBA bytes"), std::string::npos) << error;
     _tiles->format = GL_RGBA;
     _tiles->brokenBelow = 1e9;
     EXPECT_FALSE(PagedRaster::create(_tiles, {}, error));

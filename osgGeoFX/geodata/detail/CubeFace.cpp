@@ -19,6 +19,36 @@ std::array<LocalOrigin, 6> CubeFace::origins()
             LocalOrigin::onGlobe(0.0, osg::PI_2), LocalOrigin::onGlobe(0.0, -osg::PI_2)};
 }
 
+bool CubeFace::isOrigin(const LocalOrigin& origin)
+{
+    const std::array<LocalOrigin, 6> all = origins();
+    return std::any_of(all.begin(), all.end(),
+                       [&](const LocalOrigin& each)
+                       { return each.longitude == origin.longitude && each.latitude == origin.latitude; });
+}
+
+bool CubeFace::mayHave(const LocalOrigin& origin, const osg::BoundingSphered& ground)
+{
+    if (!ground.valid()) return true;
+    const auto upOf = [](const LocalOrigin& face)
+    {
+        const double level = std::cos(face.latitude);
+        return osg::Vec3d(level * std::cos(face.longitude), level * std::sin(face.longitude),
+                          std::sin(face.latitude));
+    };
+    const osg::Vec3d up = upOf(origin);
+    constexpr double border = 1e5; // the ellipsoid's faces are not quite those of a sphere
+    for (const LocalOrigin& other : origins())
+    {
+        osg::Vec3d across = up - upOf(other);
+        // Planes part it from its four neighbors.
+        if (std::abs(across.length2() - 2.0) > 1e-6) continue;
+        across.normalize();
+        if (across * ground.center() < -ground.radius() - border) return false;
+    }
+    return true;
+}
+
 MappingRaster::Window CubeFace::window(double texel)
 {
     // A face's edges bulge in its frame: their middles are at 45° of arc, its corners at 54.7°, and neither is farther than sin 45°

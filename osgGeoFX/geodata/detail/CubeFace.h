@@ -5,6 +5,7 @@
 #include <osgGeoFX/effect/LocalOrigin.h>
 #include <osgGeoFX/geodata/MappingRaster.h>
 
+#include <osg/BoundingSphere>
 #include <osg/Image>
 
 #include <array>
@@ -21,6 +22,10 @@ struct CubeFace
 
     /// 0° and 180° on the equator, 90° and −90°, and both poles.
     static std::array<LocalOrigin, 6> origins();
+    static bool isOrigin(const LocalOrigin& origin);
+
+    /// Whether a face may have ground within a sphere; Earth-centered coordinates, metres. An invalid sphere is everywhere.
+    static bool mayHave(const LocalOrigin& origin, const osg::BoundingSphered& ground);
 
     /// The square around a face in the frame of its origin.
     static MappingRaster::Window window(double texel);

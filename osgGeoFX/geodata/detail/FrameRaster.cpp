@@ -368,7 +368,11 @@ DatasetPtr FrameRaster::warped(const FrameCrs& crs, const osg::Vec2d& low, const
         arguments.emplace_back("-dstalpha");
     else
         arguments.insert(arguments.end(), {"-ot", "Float64", "-dstnodata", "nan"});
-    if (size().x() * size().y() > mostRead) checkPixels(pixelsBelow(crs, low, high, width, height));
+    if (size().x() * size().y() > mostRead)
+    {
+        const Below pixels = below(crs, low, high, width, height);
+        checkPixels(pixels.pixels * pixels.share * width * height);
+    }
     const ReadingFile reading(_file);
     constexpr int tries = 3;
     for (int i = 1;; ++i)
@@ -384,8 +388,8 @@ DatasetPtr FrameRaster::warped(const FrameCrs& crs, const osg::Vec2d& low, const
     }
 }
 
-double FrameRaster::pixelsBelow(const FrameCrs& crs, const osg::Vec2d& low, const osg::Vec2d& high, int width,
-                                int height) const
+FrameRaster::Below FrameRaster::below(const FrameCrs& crs, const osg::Vec2d& low, const osg::Vec2d& high,
+                                      int width, int height) const
 {
     GdalErrorScope errors;
     const Transformer transformer = transformerTo(crs, errors);
@@ -411,11 +415,11 @@ double FrameRaster::pixelsBelow(const FrameCrs& crs, const osg::Vec2d& low, cons
         const osg::Vec2d u = *right - *at, v = *above - *at;
         densities.push_back(std::abs(u.x() * v.y() - u.y() * v.x()));
     }
-    if (densities.empty()) return 0.0;
+    if (densities.empty()) return {};
     // At the antimeridian, two neighbors may be the raster's two ends.
     const auto middle = densities.begin() + static_cast<std::ptrdiff_t>(densities.size() / 2);
     std::nth_element(densities.begin(), middle, densities.end());
-    return *middle * width * height * static_cast<double>(densities.size()) / (side * side);
+    return {*middle, static_cast<double>(densities.size()) / (side * side)};
 }
 
 void FrameRaster::readValues(GDALDataset& warped, int row, std::vector<double>& values) const

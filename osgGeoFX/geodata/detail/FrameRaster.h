@@ -122,6 +122,15 @@ public:
     osg::ref_ptr<osg::Image> picture(int maxSide) const;
     osg::Vec2d size() const { return osg::Vec2d(top().GetRasterXSize(), top().GetRasterYSize()); }
 
+    /// What a rectangle in the CRS's unit, of so many texels, has below.
+    struct Below
+    {
+        double pixels = 0.0; ///< of the raster below a texel: the median of those that have any
+        double share = 0.0;  ///< of the texels that have any, 0…1
+    };
+    Below below(const FrameCrs& crs, const osg::Vec2d& low, const osg::Vec2d& high, int width,
+                int height) const;
+
 private:
     using Arguments = std::vector<std::string>;
     struct TransformerDestroyer
@@ -139,9 +148,6 @@ private:
     [[noreturn]] void failToRead(const std::string& message) const;
     void prepare(std::optional<DataLayer::Kind> wanted, bool placed);
     void checkPlace() const;
-    /// About how many of the raster's pixels a rectangle in the CRS's unit, of so many texels, is made of.
-    double pixelsBelow(const FrameCrs& crs, const osg::Vec2d& low, const osg::Vec2d& high, int width,
-                       int height) const;
     /// Fails where so many of the file's pixels, of the overview that is taken, would have to be read that it takes too long.
     void checkPixels(double pixels) const;
     [[noreturn]] void failForOverviews() const;

@@ -101,8 +101,9 @@ void CPL_STDCALL ReadingErrors::handle(CPLErr severity, CPLErrorNum, const char*
 {
     auto* const errors = static_cast<ReadingErrors*>(CPLGetErrorHandlerUserData());
     if (severity < CE_Failure || !errors->message.empty()) return;
-    // Of places that have none, such as the outer half of a cell that is centred on a pole.
-    if (std::string(text).rfind("PROJ: ", 0) == 0) return;
+    // Of places that have none, such as the outer half of a cell that is centred on a pole, or a part of a picture beyond the globe.
+    const std::string words = text;
+    if (words.rfind("PROJ: ", 0) == 0 || words.rfind("Too many points", 0) == 0) return;
     const bool wasMissing = std::exchange(errors->_missing, isMissingTile(text));
     // GDAL says this of the same tile next.
     const bool isSame = wasMissing && std::string(text) == "GDALWMS: Unable to open downloaded block.";
