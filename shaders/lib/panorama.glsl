@@ -133,10 +133,13 @@ GEOFX_INLINE PerMetre geofx_panoramaLift(geofx_Panorama view, Length s)
     return geofx_profileLift(view.lift, view.liftGrowth, s / view.horizon) * geofx_cylinderWidth(view.cylinder, s);
 }
 
-// How far Eq. 1 lowers a point of the picture.
+// How far Eq. 1 lowers a point of the picture. Beside the picture the bend goes on straight. A cosine would rise again there,
+// and an edge of a triangle from the picture to such a place would lie above the horizon.
 GEOFX_INLINE Number geofx_panoramaArch(geofx_Panorama view, Number x)
 {
-    return view.arch * (1 - cos(x * Number(1.5707963267948966)));
+    Number quarter = Number(1.5707963267948966);
+    Number within = min(abs(x), Number(1));
+    return view.arch * (1 - cos(within * quarter) + (abs(x) - within) * quarter);
 }
 
 // The point (x, y) of the picture and n, of a place.

@@ -219,6 +219,39 @@ TEST_F(PanoramaTruth, ASeaEndsAtTheHorizonLineAndFollowsEquationOne)
     std::cout << columns << " columns, worst " << worst << " pixels, in the middle " << worstMiddle << '\n';
 }
 
+TEST_F(PanoramaTruth, ASeaOfFewTrianglesFarBeyondThePictureFollowsEquationOneAtBothSides)
+{
+    double worst = 0.0;
+    for (int i = 0; i < (fullTest() ? 200 : 20); ++i)
+    {
+        Random random(static_cast<std::uint64_t>(i) + 3000);
+        Shot shot = randomShot(random);
+        shot.map->setHorizonBend(random.uniform(0.05, 0.2));
+        const double wide = random.logarithmic(1.5, 8.0);
+        // Beyond the horizon, all of it is gathered in one point.
+        const double far = random.logarithmic(1.5, 12.0);
+        SCOPED_TRACE(::testing::Message() << i << ": " << wide << " radii, " << far << " horizons, "
+                                          << describe(*shot.map) << "; " << shot.pose);
+        const auto sea = makeSurface(shot, {1, 1, 1, 1}, 24, 24,
+                                     [&](double u, double v) {
+                                         return MapPlace{(2.0 * u - 1.0) * wide * shot.radius(),
+                                                         (far * v - 0.1) * shot.horizon(), 0.0};
+                                     });
+        const osg::ref_ptr<osg::Image> image = draw(shot, {sea, makeSea(shot)});
+        for (int column = 0; column < WIDTH; column += 7)
+        {
+            const double x = (column + 0.5) / WIDTH * 2.0 - 1.0;
+            const double expected = HEIGHT * (shot.map->getHorizonLine() -
+                                              shot.map->getHorizonBend() * (1.0 - std::cos(x * osg::PI_2)));
+            const double off = std::abs(topRow(*image, column, 0) + 1.0 - expected);
+            worst = std::max(worst, off);
+            EXPECT_LE(off, 1.0) << "column " << column;
+        }
+        if (HasFailure()) return;
+    }
+    std::cout << "worst " << worst << " pixels\n";
+}
+
 TEST_F(PanoramaTruth, SummitsStandInTheRatioOfTheirHeightsWhateverTheirDistance)
 {
     double worst = 0.0;

@@ -288,6 +288,26 @@ TEST(Panorama, HasNoKinks)
         });
 }
 
+TEST(Panorama, EdgesThatLeaveThePictureLieNowhereAboveEquationOne)
+{
+    forRandom(
+        [](const Case& found, Random& random)
+        {
+            const glsl::geofx_Panorama& view = found.panorama();
+            const auto bent = [&](double x)
+            {
+                return -glsl::geofx_panoramaArch(view, x);
+            };
+            const double side = random.sign();
+            const double inside = random.uniform(-1.0, 1.0), outside = side * random.logarithmic(1.0, 100.0);
+            const double x = inside + random.uniform(0.0, 1.0) * (side - inside);
+            const double share = (x - inside) / (outside - inside);
+            EXPECT_LE(bent(inside) + share * (bent(outside) - bent(inside)), bent(x) + 1e-9)
+                << inside << " to " << outside << ", at " << x;
+            EXPECT_NEAR(bent(x), -view.arch * (1.0 - std::cos(x * osg::PI_2)), 1e-12);
+        });
+}
+
 TEST(Panorama, KeepsOrientation)
 {
     forRandom(

@@ -404,7 +404,7 @@ DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3
         2.0 * extent.lift * (round || farS > _view.horizon ? extent.height : ball.radius * extent.stretch) +
         std::abs(glsl::geofx_panoramaLift(_view, farS) - glsl::geofx_panoramaLift(_view, nearS)) *
             extent.height +
-        2.0 * _view.arch;
+        _view.arch * 1.5708 * apartX;
     const double apartN = 2.0 * extent.reach;
     const double mostY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + apartY;
     const double most = apartX * sideX + apartY * sideY +
@@ -555,9 +555,9 @@ bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
     }
     const double top = _view.along * glsl::geofx_panoramaRise(_view, high.y) - 1.0 + most;
     if (top < -beside - room.y()) return true;
-    const double farthest = std::min(_view.across * std::max(std::abs(low.x), std::abs(high.x)), 2.0);
+    const double farthest = _view.across * std::max(std::abs(low.x), std::abs(high.x));
     const double foot = _view.along * glsl::geofx_panoramaRise(_view, low.y) - 1.0 + least -
-                        std::abs(glsl::geofx_panoramaArch(_view, farthest));
+                        glsl::geofx_panoramaArch(_view, farthest);
     return foot > beside + room.y();
 }
 
