@@ -1,0 +1,487 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Pairs of options, as --help lists them: no crash, no message and no difference of the picture that neither option explains. A sample
+// in CI, all in ./tests/run --full.
+#include <tools/FolderContents.h>
+#include <tools/MapProgram.h>
+#include <tools/RandomSamples.h>
+#include <tools/TestRasters.h>
+
+#include <osgDB/ReadFile>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <regex>
+#include <set>
+#include <utility>
+
+using namespace geofx::test;
+namespace fs = std::filesystem;
+
+namespace
+{
+
+using Words = std::vector<std::string>;
+
+/// An option with all words that it needs.
+struct Sample
+{
+    std::string option;
+    Words words;
+};
+
+/// What an option is excluded from, by --help.
+using Exclusions = std::map<std::string, std::set<std::string>>;
+
+struct Trial
+{
+    int exitCode = 0;
+    std::set<std::string> lines; ///< without their numbers
+    std::string text;
+    osg::ref_ptr<osg::Image> picture;         ///< null if there is none
+    std::map<std::string, std::string> files; ///< of a database; empty for pictures
+};
+
+/// Numbers such as times differ from run to run.
+std::string withoutNumbers(const std::string& line)
+{
+    return std::regex_replace(line, std::regex("[-+]?[0-9]+([.][0-9]+)?"), "#");
+}
+
+bool isBeside(const osg::Image& a, const osg::Image& b, int x, int y)
+{
+    const auto* const left = a.data(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
+    const auto* const right = b.data(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
+    for (unsigned int i = 0; i < a.getPixelSizeInBits() / 8; ++i)
+        if (std::abs(left[i] - right[i]) > 2) return true;
+    return false;
+}
+
+bool haveOneForm(const osg::Image& a, const osg::Image& b)
+{
+    return a.s() == b.s() && a.t() == b.t() && a.getPixelFormat() == b.getPixelFormat() &&
+           a.getDataType() == b.getDataType() && a.getDataType() == GL_UNSIGNED_BYTE;
+}
+
+class OptionPairs : public MapProgram
+{
+protected:
+    void SetUp() override
+    {
+        MapProgram::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        const std::string names = collection(pointFeature("Top", "peak", {174.1, -39.3}) + "," +
+                                             pointFeature("Town", "town", {174.05, -39.15}));
+        write("names.geojson", names);
+        write("titles.geojson", std::regex_replace(names, std::regex("\"name\""), "\"title\""));
+        write("lines.geojson", collection(lineFeature("motorway", {173.95, -39.1}, {174.25, -39.35})));
+        write("style.json", R"({"names":{"peak":{"size":20}},"lines":{"motorway":{"width":6}}})");
+        write("area.geojson",
+              R"({"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":)"
+              R"([[[174,-39.3],[174.1,-39.3],[174.1,-39.15],[174,-39.15],[174,-39.3]]]}})");
+        write("area.style.sld",
+              R"(<StyledLayerDescriptor version="1.0.0" xmlns="http://www.opengis.net/sld"><NamedLayer>
+<UserStyle><FeatureTypeStyle><Rule><PolygonSymbolizer><Fill><CssParameter name="fill">#ff00ff</CssParameter></Fill>
+</PolygonSymbolizer></Rule></FeatureTypeStyle></UserStyle></NamedLayer></StyledLayerDescriptor>)");
+        write("ramp.txt", "0 0 0 255\n100 255 0 0\n");
+        write("route.geojson", collection(lineFeature("path", {174.0, -39.1}, {174.2, -39.25})));
+        write("path.csv",
+              "time,lon,lat,alt,heading,pitch\n0,174.1,-39.5,5000,0,-15\n1,174.1,-39.48,5000,0,-15\n");
+        TestRaster(12, 12, 3)
+            .placed(174.0, -39.1, 0.015, 0.015)
+            .crs("EPSG:4326")
+            .fill([](int column, int row, int band) { return column * 4.0 + row * 2.0 + band * 10.0; })
+            .write(file("rain.tif"));
+        TestRaster(60, 60, 1, GDT_Byte)
+            .placed(173.8, -39.0, 0.01, 0.01)
+            .crs("EPSG:4326")
+            .fill([](int column, int row, int) { return (column + row) % 3 == 0 ? 10.0 : 30.0; })
+            .write(file("classes.tif"));
+        write("classes.csv",
+              "value,class,name,red,green,blue\n10,tree_cover,Trees,0,100,0\n30,grass,Grass,200,220,100\n");
+        TestRaster(41, 41, 3, GDT_Byte)
+            .placed(173.9, -39.1, 0.01, 0.01)
+            .crs("EPSG:4326")
+            .fill([](int column, int row, int band) { return column + row + 50.0 * band; })
+            .write(file("colors.tif"));
+        std::string houses;
+        for (int i = 0; i < 4; ++i)
+        {
+            const std::string west = std::to_string(174.05 + i * 0.001),
+                              east = std::to_string(174.0503 + i * 0.001);
+            houses += std::string(i ? "," : "") + R"({"type":"Feature","properties":{"high":)" +
+                      std::to_string(10 + i) +
+                      R"(,"top":"gabled"},"geometry":{"type":"Polygon","coordinates":[[[)" + west +
+                      ",-39.2],[" + east + ",-39.2],[" + east + ",-39.1998],[" + west + ",-39.1998],[" +
+                      west + ",-39.2]]]}}";
+        }
+        write("houses.geojson", collection(houses));
+        TestRaster(41, 41)
+            .placed(173.9, -39.1, 0.01, 0.01)
+            .crs("EPSG:4326")
+            .fill([](int column, int row, int) { return 50.0 * relief(column * 0.3, row * 0.3) / 10.0; })
+            .write(file("small.tif"));
+    }
+
+    /// The options of a program in --help, but those that end it or that it cannot do without.
+    std::set<std::string> optionsOf(const std::string& program, const std::set<std::string>& others,
+                                    Exclusions& exclusions)
+    {
+        const std::string help = run(program, {"--help"}).standardOutput;
+        std::set<std::string> options;
+        std::istringstream stream(help);
+        for (std::string line; std::getline(stream, line);)
+        {
+            std::smatch match;
+            if (!std::regex_search(line, match, std::regex("^  (?:-[a-z],)?(--[a-z-]+)"))) continue;
+            const std::string option = match[1];
+            if (!others.count(option)) options.insert(option);
+            if (std::regex_search(line, match, std::regex("Excludes:((?: --[a-z-]+)+)")))
+            {
+                std::istringstream words(match[1]);
+                for (std::string each; words >> each;)
+                {
+                    exclusions[option].insert(each);
+                    exclusions[each].insert(option);
+                }
+            }
+        }
+        return options;
+    }
+
+    /// A run. Options go before those of the base that they replace. The picture is the first one in the folder out.
+    Trial tryOut(const std::string& program, const Words& sources, const std::vector<Sample>& base,
+                 const Words& words, const Exclusions& exclusions)
+    {
+        fs::remove_all(file("out"));
+        fs::create_directories(file("out"));
+        Words all = sources;
+        const auto has = [&](const std::string& option)
+        {
+            return std::find(words.begin(), words.end(), option) != words.end();
+        };
+        for (const Sample& each : base)
+        {
+            const auto excluded = exclusions.find(each.option);
+            const bool isReplaced =
+                has(each.option) || (excluded != exclusions.end() &&
+                                     std::any_of(excluded->second.begin(), excluded->second.end(), has));
+            if (!isReplaced) all.insert(all.end(), each.words.begin(), each.words.end());
+        }
+        const bool isPicture = program != "osggeofx_build";
+        if (isPicture)
+        {
+            all.push_back("-o");
+            all.push_back(std::string(has("--plan") ? "" : "out/") + (has("--path") ? "p%04d.png" : "p.png"));
+        }
+        all.insert(all.end(), words.begin(), words.end());
+        const ProgramResult result = run(program, all);
+        Trial done;
+        done.exitCode = result.exitCode;
+        done.text = result.standardOutput + result.standardError;
+        std::istringstream stream(done.text);
+        for (std::string line; std::getline(stream, line);)
+            done.lines.insert(withoutNumbers(line));
+        if (!isPicture) done.files = contents(file("out"));
+        std::set<std::string> pictures;
+        for (const auto& each : fs::directory_iterator(file("out")))
+            if (each.path().extension() == ".png") pictures.insert(each.path().string());
+        if (!pictures.empty()) done.picture = osgDB::readImageFile(*pictures.begin());
+        return done;
+    }
+
+    void tryPairs(const std::string& program, const Words& sources, const std::vector<Sample>& base,
+                  const std::vector<Sample>& samples, const std::set<std::string>& others, int sampleSize)
+    {
+        Exclusions exclusions;
+        const std::set<std::string> options = optionsOf(program, others, exclusions);
+        std::set<std::string> tried;
+        for (const Sample& each : samples)
+            tried.insert(each.option);
+        ASSERT_EQ(tried, options) << "a sample for each option of " << program << " --help, and no other";
+        const Trial none = tryOut(program, sources, base, {}, exclusions);
+        ASSERT_EQ(none.exitCode, 0) << none.text;
+        std::map<std::string, Trial> alone;
+        const auto runOf = [&](const Sample& sample) -> const Trial&
+        {
+            const auto found = alone.find(sample.option);
+            if (found != alone.end()) return found->second;
+            Trial& trial = alone[sample.option] = tryOut(program, sources, base, sample.words, exclusions);
+            EXPECT_EQ(trial.exitCode, 0) << sample.option << ": " << trial.text;
+            return trial;
+        };
+        for (const auto& [i, j] : pairsOf(samples.size(), sampleSize))
+        {
+            const Sample &first = samples[i], &second = samples[j];
+            SCOPED_TRACE(program + " " + first.option + " " + second.option);
+            const Trial &a = runOf(first), &b = runOf(second);
+            const Trial both = tryOut(program, sources, base, joined(first.words, second.words), exclusions);
+            if (areExcluded(first.words, second.words, exclusions))
+            {
+                EXPECT_EQ(both.exitCode, 2) << both.text;
+                EXPECT_NE(both.text.find("excludes"), std::string::npos) << both.text;
+            }
+            else
+                expectExplained(both, none, a, b, first.option, second.option);
+        }
+    }
+
+private:
+    static bool areExcluded(const Words& first, const Words& second, Exclusions& exclusions)
+    {
+        for (const std::string& each : first)
+            for (const std::string& other : second)
+                if (exclusions[each].count(other)) return true;
+        return false;
+    }
+
+    /// All pairs, or neighbours in a random order.
+    static std::vector<std::pair<std::size_t, std::size_t>> pairsOf(std::size_t count, int sampleSize)
+    {
+        std::vector<std::pair<std::size_t, std::size_t>> pairs;
+        if (fullTest())
+        {
+            for (std::size_t i = 0; i < count; ++i)
+                for (std::size_t j = i + 1; j < count; ++j)
+                    pairs.emplace_back(i, j);
+            return pairs;
+        }
+        Random random(56);
+        for (int i = 0; i < sampleSize; ++i)
+        {
+            const auto a = static_cast<std::size_t>(random.integer(0, static_cast<int>(count) - 1));
+            const auto b = static_cast<std::size_t>(random.integer(0, static_cast<int>(count) - 1));
+            if (a != b) pairs.emplace_back(std::min(a, b), std::max(a, b));
+        }
+        return pairs;
+    }
+
+    /// Options of both, those with one value once.
+    static Words joined(Words words, const Words& more)
+    {
+        for (std::size_t i = 0; i < more.size();)
+        {
+            std::size_t end = i + 1;
+            while (end < more.size() && more[end].rfind("--", 0) != 0)
+                ++end;
+            const auto from = more.begin() + static_cast<std::ptrdiff_t>(i);
+            const auto to = more.begin() + static_cast<std::ptrdiff_t>(end);
+            if (std::search(words.begin(), words.end(), from, to) == words.end())
+                words.insert(words.end(), from, to);
+            i = end;
+        }
+        return words;
+    }
+
+    static void expectExplained(const Trial& both, const Trial& none, const Trial& a, const Trial& b,
+                                const std::string& first, const std::string& second)
+    {
+        EXPECT_LT(both.exitCode, 3) << both.text;
+        const bool isRefused = both.exitCode != 0;
+        bool isNamed = false;
+        std::istringstream stream(both.text);
+        for (std::string line; std::getline(stream, line);)
+        {
+            const bool names =
+                line.find(first) != std::string::npos || line.find(second) != std::string::npos;
+            isNamed = isNamed || names;
+            const std::string plain = withoutNumbers(line);
+            EXPECT_TRUE(names || none.lines.count(plain) || a.lines.count(plain) || b.lines.count(plain))
+                << line;
+        }
+        EXPECT_TRUE(isNamed || !isRefused) << both.text;
+        if (!isRefused && !none.files.empty())
+        {
+            EXPECT_TRUE(a.files != none.files || both.files == b.files)
+                << "the first option alone changes nothing";
+            EXPECT_TRUE(b.files != none.files || both.files == a.files)
+                << "the second option alone changes nothing";
+        }
+        if (isRefused || !both.picture || !none.picture || !a.picture || !b.picture) return;
+        if (!haveOneForm(*none.picture, *a.picture) || !haveOneForm(*none.picture, *b.picture)) return;
+        ASSERT_TRUE(haveOneForm(*none.picture, *both.picture));
+        expectNoOtherPixels(*both.picture, *none.picture, *a.picture, *b.picture);
+    }
+
+    /// Where neither option changes the picture both do not; if one of them changes nothing, both make the other's picture.
+    static void expectNoOtherPixels(const osg::Image& both, const osg::Image& none, const osg::Image& a,
+                                    const osg::Image& b)
+    {
+        int byA = 0, byB = 0, others = 0, besideA = 0, besideB = 0;
+        for (int y = 0; y < none.t(); ++y)
+            for (int x = 0; x < none.s(); ++x)
+            {
+                const bool inA = isBeside(a, none, x, y), inB = isBeside(b, none, x, y);
+                byA += inA;
+                byB += inB;
+                others += !inA && !inB && isBeside(both, none, x, y);
+                besideA += isBeside(both, a, x, y);
+                besideB += isBeside(both, b, x, y);
+            }
+        const int most = none.s() * none.t() / 500;
+        EXPECT_TRUE(byA > 0 || besideB <= most) << besideB << ": the first option alone changes nothing";
+        EXPECT_TRUE(byB > 0 || besideA <= most) << besideA << ": the second option alone changes nothing";
+        // What moves the eye moves what the other draws.
+        const bool isMoved = std::max(byA, byB) >= none.s() * none.t() / 2;
+        EXPECT_TRUE(isMoved || others <= most)
+            << others << " pixels differ that neither option changes alone";
+    }
+};
+
+} // namespace
+
+TEST_F(OptionPairs, OfRender)
+{
+    const std::vector<Sample> samples = {
+        {"--size", {"--size", "120x80"}},
+        {"--fov", {"--fov", "40"}},
+        {"--view", {"--view", "174.1,-39.5,5000,0,-15"}},
+        {"--eye", {"--eye", "-4919000,507000,-4025000", "--look", "-4919000,506000,-4018000"}},
+        {"--look", {"--eye", "-4919000,507000,-4025000", "--look", "-4919000,506000,-4018000"}},
+        {"--up",
+         {"--eye", "-4919000,507000,-4025000", "--look", "-4919000,506000,-4018000", "--up", "-1,0,0"}},
+        {"--path", {"--path", "path.csv", "--frames", "1"}},
+        {"--frames", {"--path", "path.csv", "--frames", "1"}},
+        {"--fps", {"--path", "path.csv", "--fps", "1"}},
+        {"--plan", {"--path", "path.csv", "--frames", "2", "--plan", "out/plan"}},
+        {"--effect", {"--effect", "verticalExaggeration factor=2"}},
+        {"--city", {"--city", "city.obj"}},
+        {"--mapping", {"--mapping", "area.geojson"}},
+        {"--sequence", {"--sequence", "rain.tif"}},
+        {"--route", {"--route", "route.geojson"}},
+        {"--route-width", {"--route", "route.geojson", "--route-width", "400"}},
+        {"--mapping-style", {"--mapping", "area.geojson", "--mapping-style", "area.style.sld"}},
+        {"--colors", {"--sequence", "rain.tif", "--colors", "ramp.txt"}},
+        {"--stretch", {"--mapping", "colors.tif", "--stretch", "20,120"}},
+        {"--labels", {"--labels", "names.geojson"}},
+        {"--label-field", {"--labels", "titles.geojson", "--label-field", "title"}},
+        {"--lines", {"--lines", "lines.geojson"}},
+        {"--style", {"--labels", "names.geojson", "--style", "style.json"}},
+        {"--font", {"--labels", "names.geojson", "--font", "DejaVu Sans"}},
+        {"--svg", {"--labels", "names.geojson", "--svg", "out/map.svg"}},
+        {"--geojson", {"--labels", "names.geojson", "--geojson", "out/map.geojson"}},
+        {"--values", {"--sequence", "rain.tif", "--values", "80,60"}},
+        {"--series", {"--sequence", "rain.tif", "--values", "80,60", "--series", "out/rain.csv"}},
+        {"--layers", {"--layers", "out/layers"}},
+        {"--mesh", {"--mesh", "out/mesh.obj"}},
+        {"--web", {"--web", "out/web"}},
+        {"--title", {"--web", "out/web", "--title", "Volcano"}},
+        {"--attribution", {"--web", "out/web", "--attribution", "Nobody"}},
+        {"--bits", {"--bits", "16"}},
+        {"--inset", {"--inset"}},
+        {"--inset-corner", {"--inset", "--inset-corner", "upper-left"}},
+        {"--sky", {"--sky"}},
+        {"--no-compensation", {"--no-compensation"}},
+        {"--debug-bounds", {"--debug-bounds"}},
+        {"--no-cull", {"--no-cull"}},
+        {"--allow-outside", {"--allow-outside"}},
+        {"--samples", {"--samples", "4"}},
+        {"--wait-for-tiles", {"--wait-for-tiles"}},
+        {"--timeout", {"--timeout", "60"}},
+        {"--stats", {"--stats", "out/stats.json"}},
+        {"--least-triangles", {"--stats", "out/stats.json", "--least-triangles"}},
+        {"--platform", {"--platform", "egl"}},
+    };
+    write("city.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    tryPairs("osggeofx_render", {"work/ground/terrain.osgb"},
+             {{"--size", {"--size", "160x100"}}, {"--view", {"--view", "174.1,-39.55,4000,0,-12"}}}, samples,
+             {"--help", "--output", "--help-effects"}, 3);
+}
+
+TEST_F(OptionPairs, OfPanorama)
+{
+    const std::vector<Sample> samples = {
+        {"--size", {"--size", "120x80"}},
+        {"--view-from", {"--view-from", "north"}},
+        {"--focus", {"--focus", "174.1,-39.3"}},
+        {"--around", {"--around", "180", "--view-from", "174.1,-39.3"}},
+        {"--width", {"--width", "20000"}},
+        {"--exaggeration", {"--exaggeration", "1.5"}},
+        {"--horizon-line", {"--horizon-line", "0.7"}},
+        {"--horizon-distance", {"--horizon-distance", "3"}},
+        {"--palette", {"--palette", "winter"}},
+        {"--landcover", {"--landcover", "classes.tif", "--landcover-table", "classes.csv"}},
+        {"--landcover-table", {"--landcover", "classes.tif", "--landcover-table", "classes.csv"}},
+        {"--trees", {"--trees", "classes.tif"}},
+        {"--vertical", {"--vertical", "egm96"}},
+        {"--all-heights", {"--all-heights"}},
+        {"--set", {"--set", "strokes=false"}},
+        {"--samples", {"--samples", "4"}},
+        {"--recipe", {"--recipe", "none"}},
+        {"--work", {"--work", "out/work"}},
+        {"--plan", {"--size", "4200x60", "--plan", "out/plan"}},
+        {"--pick", {"--pick", "80,60"}},
+        {"--liberties", {"--liberties"}},
+        {"--liberty", {"--liberty", "174.1,-39.3 radius=6000 enlarge=1.2"}},
+        {"--labels", {"--labels", "names.geojson"}},
+        {"--label-field", {"--labels", "titles.geojson", "--label-field", "title"}},
+        {"--lines", {"--lines", "lines.geojson"}},
+        {"--style", {"--labels", "names.geojson", "--style", "style.json"}},
+        {"--font", {"--labels", "names.geojson", "--font", "DejaVu Sans"}},
+        {"--svg", {"--labels", "names.geojson", "--svg", "out/map.svg"}},
+        {"--geojson", {"--labels", "names.geojson", "--geojson", "out/map.geojson"}},
+        {"--layers", {"--layers", "out/layers"}},
+        {"--mesh", {"--mesh", "out/mesh.obj"}},
+        {"--web", {"--web", "out/web"}},
+        {"--title", {"--web", "out/web", "--title", "Volcano"}},
+        {"--attribution", {"--web", "out/web", "--attribution", "Nobody"}},
+        {"--bits", {"--bits", "16"}},
+        {"--explain", {"--explain"}},
+        {"--quiet", {"--quiet"}},
+    };
+    tryPairs("osggeofx_panorama", {"small.tif"},
+             {{"--size", {"--size", "160x100"}}, {"--samples", {"--samples", "0"}}}, samples,
+             {"--help", "--output"}, 1);
+}
+
+TEST_F(OptionPairs, OfBuild)
+{
+    const Words town = {"--buildings", "houses.geojson"};
+    const auto withTown = [&](Words words)
+    {
+        words.insert(words.begin(), town.begin(), town.end());
+        return words;
+    };
+    const std::vector<Sample> samples = {
+        {"--imagery", {"--imagery", "colors.tif"}},
+        {"--stretch", {"--imagery", "colors.tif", "--stretch", "20,120"}},
+        {"--landcover", {"--landcover", "classes.tif", "--landcover-table", "classes.csv"}},
+        {"--landcover-table", {"--landcover", "classes.tif", "--landcover-table", "classes.csv"}},
+        {"--tree-cover", {"--tree-cover", "classes.tif"}},
+        {"--buildings", town},
+        {"--buildings-layer", withTown({"--buildings-layer", "houses"})},
+        {"--height-field", withTown({"--height-field", "high"})},
+        {"--roof-field", withTown({"--roof-field", "top"})},
+        {"--height-unit", withTown({"--height-unit", "ft"})},
+        {"--no-ambient-occlusion", withTown({"--no-ambient-occlusion"})},
+        {"--geocentric", {"--geocentric"}},
+        {"--srs", {"--srs", "EPSG:2193"}},
+        {"--vertical", {"--vertical", "egm96"}},
+        {"--tree-line", {"--tree-line", "1000"}},
+        {"--lake-area", {"--lake-area", "1"}},
+        {"--voids", {"--voids", "keep"}},
+        {"--all-heights", {"--all-heights"}},
+        {"--void-reach", {"--void-reach", "10"}},
+        {"--void-smoothing", {"--void-smoothing", "2"}},
+        {"--tile-size", {"--tile-size", "32"}},
+        {"--texture-size", {"--texture-size", "64"}},
+        {"--pixel-error", {"--pixel-error", "2"}},
+        {"--anisotropy", {"--anisotropy", "2"}},
+        {"--compress-textures", {"--compress-textures"}},
+        {"--texel-error", {"--texel-error", "4"}},
+        {"--pixels-per-radian", {"--pixels-per-radian", "1000"}},
+        {"--memory", {"--memory", "256"}},
+        {"--threads", {"--threads", "1"}},
+        {"--resume", {"--resume"}},
+        {"--anew", {"--anew"}},
+        {"--keep-nothing", {"--keep-nothing"}},
+        {"--estimate", {"--estimate"}},
+        {"--quiet", {"--quiet"}},
+        {"--plan", {"--plan", "out/plan"}},
+    };
+    tryPairs("osggeofx_build", {"--dem", "small.tif"}, {{"--output", {"-o", "out/db"}}}, samples,
+             {"--help", "--dem", "--output", "--work", "--unit"}, 3);
+}
