@@ -36,6 +36,7 @@ CoverSampler::CoverSampler(const osg::Geometry& geometry, unsigned int unit)
         _image = imageOf(node->getStateSet(), unit);
         node = firstParent(*node);
     }
+    if (_image) _rowStep = _image->getRowStepInBytes();
 }
 
 glsl::Rgba CoverSampler::at(double s, double t) const
@@ -51,7 +52,7 @@ glsl::Rgba CoverSampler::at(double s, double t) const
     const auto read = [&](int column, int row)
     {
         const unsigned char* bytes =
-            _image->data(static_cast<unsigned int>(column), static_cast<unsigned int>(row));
+            _image->data() + static_cast<std::size_t>(row) * _rowStep + 4 * static_cast<std::size_t>(column);
         return glsl::Rgba(bytes[0], bytes[1], bytes[2], bytes[3]) / 255.0;
     };
     return glm::mix(glm::mix(read(left, bottom), read(right, bottom), x - left),

@@ -7,6 +7,8 @@
 #include <osg/Geometry>
 #include <osg/Image>
 
+#include <cstddef>
+
 namespace osgGeoFX
 {
 
@@ -28,6 +30,7 @@ public:
 
 private:
     osg::ref_ptr<const osg::Image> _image;
+    std::size_t _rowStep = 0; ///< bytes; OSG works it out anew each time
 };
 
 } // namespace osgGeoFX

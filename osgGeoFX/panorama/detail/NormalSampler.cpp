@@ -37,10 +37,9 @@ double valueInBlock(const unsigned char* block, int texel)
     return ((6 - code) * first + (code - 1) * second) / 5.0;
 }
 
+/// The value of a channel of a compressed image, 0 to 255.
 double valueAt(const osg::Image& image, int column, int row, int channel)
 {
-    if (!compressed(image))
-        return image.data(static_cast<unsigned int>(column), static_cast<unsigned int>(row))[channel];
     const int blocks = (image.s() + 3) / 4;
     const std::size_t block = static_cast<std::size_t>(row / 4 * blocks + column / 4);
     return valueInBlock(image.data() + 16 * block + 8 * channel, row % 4 * 4 + column % 4);
@@ -60,6 +59,7 @@ NormalSampler::NormalSampler(const osg::Geometry& geometry)
         (image->getPixelFormat() != GL_RG && image->getPixelFormat() != GL_RGB && !compressed(*image)))
         return;
     _image = image;
+    _rowStep = image->getRowStepInBytes();
     const auto* places = dynamic_cast<const osg::TexMat*>(
         state->getTextureAttribute(TileNormals::unit, osg::StateAttribute::TEXMAT));
     if (places) _places = places->getMatrix();
@@ -72,6 +72,7 @@ std::optional<osg::Vec3d> NormalSampler::at(double s, double t) const
     const double x = std::clamp(place.x() * _image->s() - 0.5, 0.0, _image->s() - 1.0);
     const double y = std::clamp(place.y() * _image->t() - 0.5, 0.0, _image->t() - 1.0);
     const int left = static_cast<int>(x), bottom = static_cast<int>(y);
+    const bool blocks = compressed(*_image);
     const int channels = _image->getPixelFormat() == GL_RGB ? 3 : 2;
     osg::Vec3d normal;
     for (int corner = 0; corner < 4; ++corner)
@@ -80,8 +81,15 @@ std::optional<osg::Vec3d> NormalSampler::at(double s, double t) const
         const int row = std::min(bottom + corner / 2, _image->t() - 1);
         const double weight =
             (corner % 2 ? x - left : 1.0 - x + left) * (corner / 2 ? y - bottom : 1.0 - y + bottom);
+        const unsigned char* const texel = blocks
+                                               ? nullptr
+                                               : _image->data() + static_cast<std::size_t>(row) * _rowStep +
+                                                     static_cast<std::size_t>(channels * column);
         for (int channel = 0; channel < channels; ++channel)
-            normal[channel] += weight * (valueAt(*_image, column, row, channel) - 128.0) / 127.0;
+        {
+            const double value = texel ? texel[channel] : valueAt(*_image, column, row, channel);
+            normal[channel] += weight * (value - 128.0) / 127.0;
+        }
     }
     if (channels == 2)
         normal.z() = std::sqrt(std::max(1.0 - normal.x() * normal.x() - normal.y() * normal.y(), 0.0));

@@ -6,6 +6,7 @@
 #include <osg/Image>
 #include <osg/Matrixd>
 
+#include <cstddef>
 #include <optional>
 
 namespace osgGeoFX
@@ -25,6 +26,7 @@ public:
 
 private:
     osg::ref_ptr<const osg::Image> _image;
+    std::size_t _rowStep = 0; ///< bytes; OSG works it out anew each time
     osg::Matrixd _places;
 };
 

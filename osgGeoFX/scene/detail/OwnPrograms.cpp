@@ -13,6 +13,7 @@
 #include <cctype>
 #include <functional>
 #include <iterator>
+#include <unordered_map>
 
 namespace osgGeoFX
 {
@@ -60,6 +61,17 @@ bool followsType(const std::string& text, std::size_t at)
     constexpr std::size_t size = sizeof type - 1;
     return at >= size && text.compare(at - size, size, type) == 0 &&
            (at == size || !isPartOfName(text[at - size - 1]));
+}
+
+/// OwnPrograms::calls(), which reads the whole text, of the last texts. Each pick looks at the same programs anew.
+bool callsOnceRead(const std::string& source)
+{
+    constexpr std::size_t most = 64;
+    thread_local std::unordered_map<std::string, bool> known;
+    if (known.size() > most) known.clear();
+    const auto [text, isNew] = known.try_emplace(source, false);
+    if (isNew) text->second = OwnPrograms::calls(source);
+    return text->second;
 }
 
 } // namespace
@@ -124,7 +136,7 @@ bool OwnPrograms::callsFunctions(const osg::StateAttribute& program)
     {
         const osg::Shader* shader = shaders->getShader(i);
         known.sources.emplace_back(shader, shader->getShaderSource());
-        known.calls = known.calls || (placesVertices(*shader) && calls(shader->getShaderSource()));
+        known.calls = known.calls || (placesVertices(*shader) && callsOnceRead(shader->getShaderSource()));
     }
     return known.calls;
 }
