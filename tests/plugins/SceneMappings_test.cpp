@@ -468,8 +468,7 @@ TEST_F(SceneMappingsPlugin, PicturesMayBeStretched)
     {
         const std::string message = messageOf(
             _folder.write("x.geofx", sceneWith("<raster file='p.tif' stretch='" + stretch + "'/>")));
-        EXPECT_NE(message.find("with a comma between them"), std::string::npos)
-            << message;
+        EXPECT_NE(message.find("with a comma between them"), std::string::npos) << message;
     }
 }
 

@@ -131,7 +131,8 @@ bool mayPass(const std::string& message)
 {
     if (hasAny(message, {"timed out", "too slow"})) return false;
     if (const std::optional<int> code = codeOf(message)) return *code == 0 || *code == 429 || *code >= 500;
-    return hasAny(message, {"GDALWMS: "}) || namesTile(message);
+    // Half of a tile is known by its decoder's message alone.
+    return hasAny(message, {"GDALWMS: ", "libpng: ", "libjpeg: "}) || namesTile(message);
 }
 
 } // namespace osgGeoFX
