@@ -55,7 +55,8 @@ struct BuildOptions
     std::string landCoverTable; ///< the meaning of its values, for readLandCoverTable()
     std::string treeCover;      ///< raster of the share under trees, percent; empty for none
     /// Takes all values of elevation rasters as heights. Else those that plainly are none count as missing, though their file
-    /// does not declare them: a single value far from all others, one that is all around turned data, and heights beyond −12,000 and
+    /// does not declare them: a single value far from all others (between −500 and 9,000 m only if it stands along the raster's
+    /// border), one that is all around turned data, and heights beyond −12,000 and
     /// 9,500 m. A warning states the first two.
     bool allHeights = false;
     int epsg = 0; ///< EPSG code of a projected database; 0 for a geocentric one (WGS 84)
