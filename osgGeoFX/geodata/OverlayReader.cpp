@@ -261,6 +261,23 @@ private:
         return LocalOrigin::onGlobe(longitude, latitude);
     }
 
+    /// The origin of a frame that there is, if ground around a place is near to it, else the place; and how far the place is from it, metres.
+    std::pair<LocalOrigin, double> originNear(const LocalOrigin& place) const
+    {
+        const auto degrees = [](const LocalOrigin& origin)
+        {
+            return osg::Vec2d(osg::RadiansToDegrees(origin.longitude),
+                              osg::RadiansToDegrees(origin.latitude));
+        };
+        for (const LocalOrigin& origin : frames)
+        {
+            const double distance = arc(degrees(origin), degrees(place)) * earthRadius;
+            if (distance + _options.ground.radius() < mostReach && !CubeFace::isOrigin(origin))
+                return {origin, distance};
+        }
+        return {place, 0.0};
+    }
+
     /// TiledRaster's reach for a part of a raster around the globe; 0 for a sixth.
     static double reachAround(const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
     {
@@ -281,11 +298,12 @@ private:
         }
         if (mayBeCut && hasSmallGround())
         {
+            const auto [origin, distance] = originNear(middleOfGround());
             MappingFrame frame = frameOf(frames.size());
-            frame.origin = middleOfGround();
-            const double half = std::max(1.05 * _options.ground.radius(), leastReach);
+            frame.origin = origin;
+            const double half = std::max(1.05 * (distance + _options.ground.radius()), leastReach);
             take(frame, MappingRaster::Window{{-half, -half}, {half, half}, reach.texel});
-            overlay.frame = frameAt(frame.origin, name);
+            overlay.frame = frameAt(origin, name);
             add(overlay);
             return;
         }

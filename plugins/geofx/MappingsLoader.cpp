@@ -214,6 +214,9 @@ private:
         if (overlay.style) request.style = overlay.style->path;
         request.bands = overlay.bands;
         if (_hasOrigin) request.frames.push_back(_effect.getLocalOrigin());
+        const osg::BoundingSphere bound = _terrain.node().getBound();
+        if (_ellipsoid)
+            request.ground = osg::BoundingSphered(bound.center(), static_cast<double>(bound.radius()));
         const std::string fault =
             SceneTerrain::ask(overlay.place, "sceneOverlays", &request, "use a <layer> with a <mapping>");
         if (request.overlays.empty()) fail(overlay.place, fault);

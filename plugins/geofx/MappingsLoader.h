@@ -8,6 +8,8 @@
 #include <osgGeoFX/mapping/GroundOverlay.h>
 #include <osgGeoFX/mapping/LayerSequence.h>
 
+#include <osg/BoundingSphere>
+
 namespace osgGeoFX
 {
 
@@ -30,6 +32,7 @@ struct SceneOverlaysRequest
     std::string colors;
     std::string layer, style;         ///< of vector data
     std::optional<RasterBands> bands; ///< of rasters
+    osg::BoundingSphered ground;      ///< OverlayReader::Options::ground
     int maxSide = 0;
     double maxTexels = 0.0;                      ///< of KML's pictures together
     OverlayRaster::Pictures* pictures = nullptr; ///< of the scene's KML files

@@ -205,7 +205,6 @@ private:
         {
             how.allowOutside = request->allowOutside;
             how.paged = request->paged;
-            how.ground = request->ground;
         }
         else
         {
@@ -217,6 +216,7 @@ private:
         how.layer = request->layer;
         how.style = request->style;
         how.bands = request->bands;
+        how.ground = request->ground;
         if (!reader.read(request->file, how, error)) return error;
         request->frames = reader.frames;
         if constexpr (std::is_same_v<Request, OverlayFile>) request->files = reader.files;

@@ -718,6 +718,48 @@ TEST_F(SceneMappingsPlugin, SequencesFollowTheScenesClock)
     expectFault("<sequence file='rain'/>", "lies outside the scene's folder");
 }
 
+// A map of the world is cut out around the terrain, in the effect's frame if that is near.
+TEST_F(SceneMappingsPlugin, AMapOfTheWorldIsCutOutAroundTheTerrain)
+{
+    const osg::ref_ptr<osg::CoordinateSystemNode> terrain = terrainOf(0);
+    osg::Vec3d middle;
+    terrain->getEllipsoidModel()->convertLatLongHeightToXYZ(
+        osg::DegreesToRadians(21.3), osg::DegreesToRadians(-158.0), 0.0, middle.x(), middle.y(), middle.z());
+    const osg::ref_ptr<osg::Geometry> ground = new osg::Geometry;
+    const osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
+    for (const osg::Vec3d& corner :
+         {osg::Vec3d(3e4, 0.0, 0.0), osg::Vec3d(0.0, 3e4, 0.0), osg::Vec3d(0.0, 0.0, 3e4)})
+        corners->push_back(osg::Vec3(middle + corner));
+    ground->setVertexArray(corners);
+    ground->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, 3));
+    terrain->addChild(ground);
+    saveTerrain(*terrain);
+    geofx::test::TestRaster(720, 360, 3, GDT_Byte)
+        .placed(-180.0, 90.0, 0.5, 0.5)
+        .crs("EPSG:4326")
+        .fill([](int column, int row, int band)
+              { return band == 0   ? column / 3.0
+                       : band == 1 ? row / 2.0
+                                   : 0.0; })
+        .write(_folder / "world.tif");
+    for (const std::string origin : {"", "longitude='-157' latitude='22'"})
+    {
+        auto* const effect = effectOf<ProjectiveMappings>(sceneWith("<overlays file='world.tif'/>", origin));
+        ASSERT_TRUE(effect) << origin;
+        ASSERT_EQ(effect->getNumMappings(), 1u) << origin;
+        const ProjectiveMapping& mapping = *effect->getMapping(0);
+        EXPECT_LT(mapping.getU().length(), 1e6) << origin;
+        const osg::Image& image = *mapping.getLayer()->getImage();
+        const unsigned char* const texel =
+            image.data(static_cast<unsigned int>(image.s() / 2), static_cast<unsigned int>(image.t() / 2));
+        const double longitude = osg::RadiansToDegrees(effect->getLongitude()),
+                     latitude = osg::RadiansToDegrees(effect->getLatitude());
+        EXPECT_NEAR(texel[0], (longitude + 180.0) / 1.5, 1.0) << origin;
+        EXPECT_NEAR(texel[1], (90.0 - latitude) / 1.0, 1.0) << origin;
+        EXPECT_EQ(texel[3], 255) << origin;
+    }
+}
+
 // Ground overlays and ways of files, and a way of way points, are mappings of the effect, where GeographicLib has their places.
 TEST_F(SceneMappingsPlugin, OverlaysAndRoutesLieWhereTheirFilesSay)
 {
