@@ -198,25 +198,84 @@ TEST_F(GlObjects, ContextsCloseAndOpen)
     }
 }
 
+TEST_F(GlObjects, AScenesProgramsLetGoOfAContextThatCloses)
+{
+    // Programs of the application's own class have copies of this class.
+    class OwnProgram : public osg::Program
+    {
+    public:
+        OwnProgram() = default;
+        OwnProgram(const OwnProgram& other, const osg::CopyOp& copy) : osg::Program(other, copy) {}
+        osg::Object* cloneType() const override { return new OwnProgram; }
+        osg::Object* clone(const osg::CopyOp& copy) const override { return new OwnProgram(*this, copy); }
+    };
+    for (const bool own : {false, true})
+    {
+        SCOPED_TRACE(own);
+        osg::ref_ptr<osg::Program> program;
+        if (own)
+        {
+            program = new OwnProgram;
+            program->addShader(new osg::Shader(
+                osg::Shader::VERTEX, "#version 330 compatibility\n"
+                                     "vec4 geofx_vertex(vec4 eyePosition);\n"
+                                     "void main()\n"
+                                     "{\n"
+                                     "    vec4 eye = geofx_vertex(gl_ModelViewMatrix * gl_Vertex);\n"
+                                     "    gl_Position = gl_ProjectionMatrix * eye;\n"
+                                     "}\n"));
+            program->addShader(
+                new osg::Shader(osg::Shader::FRAGMENT,
+                                "#version 330 compatibility\n"
+                                "vec4 geofx_fragment(vec4 color, vec4 map);\n"
+                                "void main() { gl_FragColor = geofx_fragment(vec4(1.0), vec4(0.0)); }\n"));
+            EffectScene::addFunctions(*program);
+            _scene->getChild(0)->getOrCreateStateSet()->setAttributeAndModes(program);
+        }
+        const osg::ref_ptr<EffectScene> other = new EffectScene;
+        other->addChild(makeHills());
+        other->addEffect(new BirdsEyeView);
+        show({new BirdsEyeView, makeMappings(0.0)});
+        drawSettled();
+        // The former scene lives on in no view of the context. OSG leaves what the application has there to the application.
+        render(other);
+        if (own) withContext([&](osg::State& state) { program->releaseGLObjects(&state); });
+        reopen();
+        render(other);
+        const osg::ref_ptr<osg::Image> expected = render(other);
+        // The names that the former scene's programs had are others' now.
+        _root->releaseGLObjects(nullptr);
+        count(); // deletes what has been released
+        EXPECT_TRUE(same(*expected, *render(other))) << "what others have went with the scene";
+        reopen();
+    }
+}
+
 TEST_F(GlObjects, EffectsThatAreElsewhereLetGoOfAContextThatCloses)
 {
     _closeUps->setPipeline(CloseUps::MULTI_PASS);
+    // It has programs, textures and frame buffers of its own.
+    const osg::ref_ptr<CloseUps> other = new CloseUps;
+    other->setPipeline(CloseUps::MULTI_PASS);
+    other->addCloseUp(makeCloseUp({0.0, 0.0}));
     for (const auto& [what, effects] : all())
     {
         SCOPED_TRACE(what);
         show(effects);
         const osg::ref_ptr<osg::Image> expected = drawSettled();
-        show({});
-        const osg::ref_ptr<osg::Image> plain = drawSettled();
+        show({other});
+        const osg::ref_ptr<osg::Image> others = drawSettled();
         reopen();
         // The names that the effects had are others' now.
-        EXPECT_TRUE(same(*plain, *drawSettled()));
+        EXPECT_TRUE(same(*others, *drawSettled()));
         for (const osg::ref_ptr<Effect>& effect : effects)
             effect->releaseGLObjects(nullptr);
         count(); // deletes what has been released
-        EXPECT_TRUE(same(*plain, *drawSettled())) << "what others have went with the effects";
+        EXPECT_TRUE(same(*others, *drawSettled())) << "what others have went with the effects";
         show(effects);
         EXPECT_TRUE(same(*expected, *drawSettled()));
+        show({other});
+        EXPECT_TRUE(same(*others, *drawSettled())) << "what others have went with the effects' former views";
     }
 }
 

@@ -4,10 +4,13 @@
 
 #include <osg/Notify>
 #include <osg/State>
+#include <osg/observer_ptr>
 
+#include <algorithm>
 #include <atomic>
 #include <cctype>
 #include <utility>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -92,13 +95,70 @@ void copyRest(const osg::Program& from, osg::Program& to)
     to.getShaderDefines().insert(defines.begin(), defines.end());
 }
 
+/// Those that releaseAll() finds. Thread-safe.
+class Programs
+{
+public:
+    /// Never deleted: programs may outlive what is static.
+    static Programs& instance()
+    {
+        static auto* const programs = new Programs;
+        return *programs;
+    }
+    void add(osg::Program& program)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        if (_all.size() >= _purgeSize)
+        {
+            const auto gone = [](const osg::observer_ptr<osg::Program>& each)
+            {
+                return !each.valid();
+            };
+            _all.erase(std::remove_if(_all.begin(), _all.end(), gone), _all.end());
+            _purgeSize = 2 * _all.size() + 64;
+        }
+        _all.emplace_back(&program);
+    }
+    std::vector<osg::ref_ptr<osg::Program>> living()
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        std::vector<osg::ref_ptr<osg::Program>> result;
+        for (const osg::observer_ptr<osg::Program>& each : _all)
+        {
+            osg::ref_ptr<osg::Program> program;
+            if (each.lock(program)) result.push_back(program);
+        }
+        return result;
+    }
+
+private:
+    std::mutex _mutex;
+    std::vector<osg::observer_ptr<osg::Program>> _all;
+    std::size_t _purgeSize = 64;
+};
+
 } // namespace
 
-ProfileProgram::ProfileProgram() = default;
+ProfileProgram::ProfileProgram()
+{
+    watch(*this);
+}
 
 ProfileProgram::ProfileProgram(const osg::Program& other) : osg::Program(other)
 {
     copyRest(other, *this);
+    watch(*this);
+}
+
+void ProfileProgram::watch(osg::Program& program)
+{
+    Programs::instance().add(program);
+}
+
+void ProfileProgram::releaseAll(osg::State& state)
+{
+    for (const osg::ref_ptr<osg::Program>& program : Programs::instance().living())
+        program->releaseGLObjects(&state);
 }
 
 ProfileProgram::~ProfileProgram() = default;

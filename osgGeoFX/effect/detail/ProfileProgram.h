@@ -48,6 +48,12 @@ public:
         keep their numbers. */
     static std::string coreText(const std::string& text, osg::Shader::Type stage);
 
+    /// Releases what all programs that live have in the context of a state, wherever they are: those of this class, and those that
+    /// watch() was called for. Any thread may call it.
+    static void releaseAll(osg::State& state);
+    /// For a copy of a program of an application's own class.
+    static void watch(osg::Program& program);
+
     /// Hold it while programs get shaders that others have, too: OSG's shaders know their programs.
     static std::mutex& sharing();
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/effect/detail/ProfileProgram.h>
 #include <osgGeoFX/scene/detail/ContextWatch.h>
 
 #include <osg/ContextData>
@@ -61,6 +62,7 @@ private:
             osg::ref_ptr<Effect> effect;
             if (watched.lock(effect)) effect->releaseGLObjects(state);
         }
+        ProfileProgram::releaseAll(*state);
     }
 
     std::mutex _mutex;
@@ -70,12 +72,12 @@ private:
 } // namespace
 
 ContextWatch::ContextWatch(const std::vector<osg::ref_ptr<Effect>>& effects)
-    : _effects(effects.begin(), effects.end())
+    : _effects(effects.begin(), effects.end()), _ofScene(true)
 {
 }
 
 ContextWatch::ContextWatch(const ContextWatch& other, const osg::CopyOp& copy)
-    : osg::StateAttribute(other, copy), _effects(other._effects)
+    : osg::StateAttribute(other, copy), _effects(other._effects), _ofScene(other._ofScene)
 {
 }
 
@@ -84,14 +86,15 @@ ContextWatch::~ContextWatch() = default;
 int ContextWatch::compare(const osg::StateAttribute& other) const
 {
     COMPARE_StateAttribute_Types(ContextWatch, other);
+    if (_ofScene != rhs._ofScene) return _ofScene ? 1 : -1;
     if (_effects == rhs._effects) return 0;
     return _effects < rhs._effects ? -1 : 1;
 }
 
 void ContextWatch::apply(osg::State& state) const
 {
-    // OSG also applies a watch without effects, where there is no scene.
-    if (!_effects.empty()) osg::get<Closing>(state.getContextID())->add(_effects);
+    // OSG also applies a watch of no scene.
+    if (_ofScene) osg::get<Closing>(state.getContextID())->add(_effects);
 }
 
 } // namespace osgGeoFX

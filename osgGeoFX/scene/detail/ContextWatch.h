@@ -13,10 +13,11 @@ namespace osgGeoFX
 {
 
 /** A part of the state that a scene draws with. When a graphics context closes in which it was applied, the effects
-    release what they have in this context, wherever they are by then.
+    release what they have in this context, wherever they are by then, and so do all programs of the kit.
 
-    When a context closes, OSG tells the scene graphs of its cameras. An effect that was taken out of its scene is not
-    told. It would go on with programs and frame buffers whose names the next context gives to other objects. */
+    When a context closes, OSG releases the scene graphs of its cameras, and all textures and buffers. It leaves out an effect that
+    was taken out of its scene, and a scene that is no longer in a view of this context. These would go on with programs and frame
+    buffers whose names the next context gives to other objects. */
 class ContextWatch : public osg::StateAttribute
 {
 public:
@@ -38,6 +39,7 @@ protected:
 
 private:
     std::vector<osg::observer_ptr<Effect>> _effects;
+    bool _ofScene = false; ///< not one that OSG has made by itself
 };
 
 } // namespace osgGeoFX

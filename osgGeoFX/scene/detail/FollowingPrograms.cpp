@@ -53,8 +53,14 @@ bool isOrdinary(const osg::Program& program)
 osg::ref_ptr<osg::Program> copyOf(const osg::Program& program, const ProgramAdaptation* adaptation)
 {
     // A class of the application's may hold more. Its copies draw in the compatibility profile alone.
-    osg::ref_ptr<osg::Program> copy =
-        isOrdinary(program) ? new ProfileProgram(program) : osg::clone(&program, osg::CopyOp::SHALLOW_COPY);
+    osg::ref_ptr<osg::Program> copy;
+    if (isOrdinary(program))
+        copy = new ProfileProgram(program);
+    else
+    {
+        copy = osg::clone(&program, osg::CopyOp::SHALLOW_COPY);
+        ProfileProgram::watch(*copy);
+    }
     for (unsigned int i = copy->getNumShaders(); i-- > 0;)
     {
         if (EffectProgram::isFunctions(*copy->getShader(i))) copy->removeShader(copy->getShader(i));
