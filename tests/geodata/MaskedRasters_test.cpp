@@ -217,10 +217,11 @@ std::vector<Sample> samples(bool lossy)
     return result;
 }
 
-/// All of them in ./tests/run --full, else each mask with each kind of overviews, in one storage.
+/// All of them in ./tests/run --full, else each mask with each kind of overviews, in one storage: those with no-data of all bands in
+/// JPEG, which rounds it.
 bool isTaken(std::size_t index, std::size_t storages)
 {
-    return fullTest() || index % storages == (index / storages) % storages;
+    return fullTest() || index % storages == (index / storages + 4) % storages;
 }
 
 /// Whether a texel is so near to the hole that the same is all around it. JPEG itself mixes the colors on both sides of the border.

@@ -37,6 +37,55 @@ bool hasNoData(GDALRasterBand& band)
     return has != FALSE;
 }
 
+/// Whether a band keeps its values only roughly.
+bool isLossy(GDALRasterBand& band)
+{
+    GDALDataset* const dataset = band.GetDataset();
+    const char* const compression =
+        dataset ? dataset->GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE") : nullptr;
+    return compression && band.GetRasterDataType() == GDT_Byte &&
+           std::string(compression).find("JPEG") != std::string::npos;
+}
+
+/** Which pixels of a band with bytes have its no-data value, where JPEG has kept them. JPEG rounds the value that fills a hole: in
+    overviews of its usual quality, 75, by up to 3, and by more only along the hole's border, where it mixes both sides. */
+class RoughNoDataMask final : public GDALRasterBand
+{
+public:
+    explicit RoughNoDataMask(GDALRasterBand& values) : _values(values), _noData(values.GetNoDataValue())
+    {
+        nRasterXSize = values.GetXSize();
+        nRasterYSize = values.GetYSize();
+        eDataType = GDT_Byte;
+        values.GetBlockSize(&nBlockXSize, &nBlockYSize);
+    }
+
+protected:
+    CPLErr IReadBlock(int column, int row, void* data) override
+    {
+        constexpr double rounding = 3.0;
+        if (_values.ReadBlock(column, row, data) != CE_None) return CE_Failure;
+        auto* const bytes = static_cast<unsigned char*>(data);
+        std::transform(bytes, bytes + static_cast<std::ptrdiff_t>(nBlockXSize) * nBlockYSize, bytes,
+                       [&](unsigned char value)
+                       {
+                           return std::abs(value - _noData) <= rounding ? static_cast<unsigned char>(0)
+                                                                        : static_cast<unsigned char>(255);
+                       });
+        return CE_None;
+    }
+
+private:
+    GDALRasterBand& _values;
+    const double _noData;
+};
+
+std::unique_ptr<GDALRasterBand> noDataMaskOf(GDALRasterBand& band)
+{
+    if (isLossy(band)) return std::make_unique<RoughNoDataMask>(band);
+    return std::make_unique<GDALNoDataMaskBand>(&band);
+}
+
 /// What alpha has where all of a pixel is seen.
 double opaque(GDALRasterBand& alpha)
 {
@@ -235,7 +284,7 @@ RasterMask::RasterMask(GDALDataset& dataset, const std::vector<int>& bands, Unde
         }
     for (const int band : bands)
         if (hasNoData(*dataset.GetRasterBand(band)))
-            _noData.push_back(std::make_unique<GDALNoDataMaskBand>(levelOf(dataset.GetRasterBand(band))));
+            _noData.push_back(noDataMaskOf(*levelOf(dataset.GetRasterBand(band))));
     if (_noData.size() < bands.size()) _noData.clear();
     for (int i = 1; i <= dataset.GetRasterCount(); ++i)
     {

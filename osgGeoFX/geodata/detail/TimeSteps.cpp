@@ -481,6 +481,7 @@ public:
 
     std::unique_ptr<FrameRaster> step(std::size_t index) override
     {
+        const GdalErrorScope quiet;
         DatasetChain chain;
         chain.add(RasterFile::openPlain(_file));
         std::vector<std::string> bands{"-b", std::to_string(index + 1)};
@@ -580,11 +581,8 @@ TimeSteps::~TimeSteps() = default;
 
 DatasetChain TimeSteps::first(const std::string& file, const std::string& variable)
 {
-    DatasetPtr dataset;
-    {
-        const GdalErrorScope errors;
-        dataset.reset(GDALDataset::Open(file.c_str(), GDAL_OF_MULTIDIM_RASTER));
-    }
+    const GdalErrorScope quiet; // metadata may be read late
+    DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_MULTIDIM_RASTER));
     if (!dataset) return {};
     return DimensionSteps(file, std::move(dataset), variable, false).rasterOf(0);
 }
@@ -595,11 +593,8 @@ std::unique_ptr<TimeSteps> TimeSteps::open(const std::string& file, const std::s
     initialiseGdal();
     std::error_code fault;
     const bool folder = fs::is_directory(file, fault);
-    DatasetPtr dataset;
-    {
-        const GdalErrorScope errors;
-        dataset.reset(GDALDataset::Open(file.c_str(), GDAL_OF_MULTIDIM_RASTER));
-    }
+    const GdalErrorScope quiet; // metadata may be read late
+    DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_MULTIDIM_RASTER));
     // A folder may be a Zarr, too.
     if (dataset) return std::make_unique<DimensionSteps>(file, std::move(dataset), variable);
     if (!variable.empty())
