@@ -5,6 +5,7 @@
 #include "bench/BenchError.h"
 #include "bench/Interruption.h"
 #include "bench/Report.h"
+#include "process/CommandLine.h"
 
 #include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/paging/FreedMemory.h>
@@ -162,7 +163,7 @@ int main(int argc, char** argv)
     }
     catch (const CLI::ParseError& error)
     {
-        return app.exit(error) == 0 ? 0 : 2;
+        return geofx::exitCodeOf(app, error);
     }
 
     try

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_build: rasters to a paged terrain database, and buildings into it.
+#include "process/CommandLine.h"
+
 #include <osgGeoFX/raster/RasterBands.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <osgGeoFX/terrain/DistributedBuild.h>
@@ -231,7 +233,7 @@ int main(int argc, char** argv)
     }
     catch (const CLI::ParseError& error)
     {
-        return app.exit(error) == 0 ? 0 : 2;
+        return geofx::exitCodeOf(app, error);
     }
 
     try

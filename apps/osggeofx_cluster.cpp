@@ -5,6 +5,7 @@
 // scheduling.
 #include "cluster/Jobs.h"
 #include "cluster/Prediction.h"
+#include "process/CommandLine.h"
 
 #include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/batch/WorkError.h>
@@ -503,7 +504,7 @@ int main(int argc, char** argv)
     }
     catch (const CLI::ParseError& error)
     {
-        return app.exit(error) == 0 ? 0 : 2;
+        return geofx::exitCodeOf(app, error);
     }
     try
     {

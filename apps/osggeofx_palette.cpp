@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_palette: palettes of panorama maps, ready ones and those of paintings.
+#include "process/CommandLine.h"
+
 #include <osgGeoFX/batch/InputFiles.h>
 #include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/geodata/BuildError.h>
@@ -277,9 +279,7 @@ int main(int argc, char** argv)
     }
     catch (const CLI::ParseError& error)
     {
-        if (error.get_exit_code() == 0) return app.exit(error);
-        std::cerr << "osggeofx_palette: " << error.what() << "; --help lists the options.\n";
-        return badInput;
+        return geofx::exitCodeOf(app, error);
     }
     try
     {

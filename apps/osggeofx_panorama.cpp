@@ -10,6 +10,7 @@
 #include "panorama/RecipeLiberties.h"
 #include "plan/PicturePlan.h"
 #include "print/PrintOptions.h"
+#include "process/CommandLine.h"
 #include "web/ScenePage.h"
 
 #include <osgGeoFX/batch/OwnFolder.h>
@@ -768,7 +769,7 @@ int main(int argc, char** argv)
     }
     catch (const CLI::ParseError& error)
     {
-        return app.exit(error) == 0 ? 0 : badInput;
+        return geofx::exitCodeOf(app, error);
     }
     catch (const std::exception& error)
     {

@@ -8,6 +8,7 @@
 #include "osggeofx_render_output.h"
 #include "plan/PicturePlan.h"
 #include "print/PrintOptions.h"
+#include "process/CommandLine.h"
 #include "render/Camera.h"
 #include "render/Deadline.h"
 #include "render/Values.h"
@@ -656,14 +657,9 @@ int main(int argc, char** argv)
                         : geofx::plan::Division("osggeofx_render", call->arguments, arguments.plan),
             deadline);
     }
-    catch (const CLI::Success& help)
-    {
-        return app.exit(help);
-    }
     catch (const CLI::ParseError& error)
     {
-        std::cerr << "osggeofx_render: " << error.what() << "; see --help." << std::endl;
-        return badInput;
+        return geofx::exitCodeOf(app, error);
     }
     catch (const Failure& failure)
     {

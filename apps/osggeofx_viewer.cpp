@@ -179,11 +179,11 @@ int main(int argc, char** argv)
     arguments.reportRemainingOptionsAsUnrecognized();
     if (arguments.errors())
     {
-        return refuse(arguments.getErrorMessageMap().begin()->first + "; see --help.");
+        return refuse(arguments.getErrorMessageMap().begin()->first + "; --help lists the options.");
     }
     if (arguments.argc() < 2)
     {
-        return refuse("Name a file to show; see --help.");
+        return refuse("Name a file to show; --help lists the options.");
     }
     if (fieldOfViewGiven && !(fieldOfView > 0.0 && fieldOfView < 180.0))
     {

@@ -109,6 +109,13 @@ std::string GroundBuilder::overview()
 
 std::string GroundBuilder::ground(const osgGeoFX::PanoramaComposition& view)
 {
+    const std::vector<osg::Vec2d> places = placesOf(view);
+    const auto isShown = [&](const std::string& dem)
+    {
+        return ThinnedRaster::cut(dem, places, 1).columns > 0;
+    };
+    if (std::none_of(_recipe.dems.begin(), _recipe.dems.end(), isShown))
+        throw Failure("None of the DEMs has ground in the picture; choose another place or width.");
     if (_samples <= fewSamples) return build("ground", 1, {});
     const double wanted = 2.0 * view.viewRadius / (_recipe.width * samplesPerPixel);
     const int factor = std::max(1, static_cast<int>(wanted / _spacing));
@@ -121,7 +128,7 @@ std::string GroundBuilder::ground(const osgGeoFX::PanoramaComposition& view)
         factor > 1 ? (", " + std::to_string(factor) + " times coarser").c_str() : "",
         wanted * samplesPerPixel);
     _notes.emplace_back(note);
-    return build("ground", factor, placesOf(view));
+    return build("ground", factor, places);
 }
 
 std::string GroundBuilder::groundIn(const std::string& folder)
@@ -163,8 +170,6 @@ std::string GroundBuilder::build(const std::string& name, int factor, const std:
         }
         options.dems.push_back(copy);
     }
-    if (options.dems.empty())
-        throw Failure("None of the DEMs has ground in the picture; choose another place or width.");
     options.landCover = _recipe.landCover;
     options.landCoverTable = _recipe.landCoverTable;
     options.treeCover = _recipe.treeCover;

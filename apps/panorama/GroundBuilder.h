@@ -25,7 +25,7 @@ public:
 
     /// The terrain as a whole, for the choice of a view; with at most some two million samples. Returns the database's file.
     std::string overview();
-    /// The terrain for the picture of the recipe's view. Returns the database's file.
+    /// The terrain for the picture of the recipe's view. Returns the database's file. Throws Failure if no DEM has ground there.
     std::string ground(const osgGeoFX::PanoramaComposition& view);
     /// The database's file that ground() has left in a folder.
     static std::string groundIn(const std::string& folder);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "plan/PicturePlan.h"
+#include "process/CommandLine.h"
 
 #include <osgGeoFX/batch/PathText.h>
 #include <osgGeoFX/batch/WholeFile.h>
@@ -71,7 +72,7 @@ std::optional<Call> callOf(const std::string& program, int argc, char** argv, in
     }
     catch (const CLI::ParseError& error)
     {
-        exitCode = app.exit(error) == 0 ? 0 : 2;
+        exitCode = exitCodeOf(app, error);
         return std::nullopt;
     }
     // What the environment says counts more.

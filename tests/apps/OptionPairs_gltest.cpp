@@ -91,7 +91,7 @@ protected:
         write("path.csv",
               "time,lon,lat,alt,heading,pitch\n0,174.1,-39.5,5000,0,-15\n1,174.1,-39.48,5000,0,-15\n");
         TestRaster(12, 12, 3)
-            .placed(174.0, -39.1, 0.015, 0.015)
+            .placed(173.9, -39.0, 0.05, 0.05)
             .crs("EPSG:4326")
             .fill([](int column, int row, int band) { return column * 4.0 + row * 2.0 + band * 10.0; })
             .write(file("rain.tif"));
@@ -225,7 +225,7 @@ protected:
                 EXPECT_NE(both.text.find("excludes"), std::string::npos) << both.text;
             }
             else
-                expectExplained(both, none, a, b, first.option, second.option);
+                expectExplained(both, none, a, b, joined(first.words, second.words));
         }
     }
 
@@ -276,8 +276,9 @@ private:
         return words;
     }
 
+    /// `words`: all that was given beside the base.
     static void expectExplained(const Trial& both, const Trial& none, const Trial& a, const Trial& b,
-                                const std::string& first, const std::string& second)
+                                const Words& words)
     {
         EXPECT_LT(both.exitCode, 3) << both.text;
         const bool isRefused = both.exitCode != 0;
@@ -286,7 +287,9 @@ private:
         for (std::string line; std::getline(stream, line);)
         {
             const bool names =
-                line.find(first) != std::string::npos || line.find(second) != std::string::npos;
+                std::any_of(words.begin(), words.end(),
+                            [&](const std::string& each)
+                            { return each.rfind("--", 0) == 0 && line.find(each) != std::string::npos; });
             isNamed = isNamed || names;
             const std::string plain = withoutNumbers(line);
             EXPECT_TRUE(names || none.lines.count(plain) || a.lines.count(plain) || b.lines.count(plain))

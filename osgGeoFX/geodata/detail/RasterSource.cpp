@@ -137,6 +137,10 @@ void RasterSource::openAs(RasterKind kind, const UndeclaredVoids& undeclared)
     if (GDALDataTypeIsComplex(type))
         fail("its values are complex numbers; export a real band with gdal_translate -ot Float32");
 
+    if (kind == RasterKind::Elevation && type == GDT_Byte && _chain.top().GetRasterCount() >= 3 &&
+        band->GetColorInterpretation() == GCI_RedBand)
+        fail("it is a picture in red, green and blue, not heights; give a raster of heights, or show the "
+             "picture with --imagery");
     if (kind != RasterKind::Imagery)
     {
         auto mask = std::make_unique<RasterMask>(_chain.top(), std::vector<int>{1}, undeclared);
