@@ -690,7 +690,7 @@ TEST_F(MappingRasterValues, OfNoUseAreToldWithFileAndMend)
     {
         EXPECT_NE(message.find(words), std::string::npos) << message;
     };
-    holds(messageOf((_folder / "none.tif").string(), _frame), "is not a raster that GDAL can read");
+    holds(messageOf((_folder / "none.tif").string(), _frame), "there is no such file");
     holds(messageOf(_folder.write("text.tif", "hello").string(), _frame), "check it with gdalinfo");
     holds(messageOf(TestRaster(4, 4).crs("EPSG:4326").write(_folder / "a.tif"), _frame),
           "gdal_translate -a_ullr");

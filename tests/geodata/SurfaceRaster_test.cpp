@@ -345,7 +345,7 @@ TEST_F(SurfaceRasterLayers, OfNoUseAreToldWithFileAndMend)
 {
     const std::string good = raster(60, 40).write(_folder / "good.tif");
     const std::string missing = (_folder / "none.tif").string();
-    holds(sentenceOf(missing, SurfaceData::HEIGHT), "is not a raster that GDAL can read");
+    holds(sentenceOf(missing, SurfaceData::HEIGHT), "there is no such file");
     holds(sentenceOf(TestRaster(4, 4).crs("EPSG:4326").write(_folder / "a.tif"), SurfaceData::HEIGHT),
           "gdal_translate -a_ullr");
     holds(sentenceOf(raster(4, 4, 1, GDT_Float32).write(_folder / "d.tif"), SurfaceData::COLOR),
@@ -381,7 +381,7 @@ TEST_F(SurfaceRasterLayers, OfNoUseAreToldWithFileAndMend)
         return sentenceOf(file, [&](std::string& error)
                           { return SurfaceRaster::fromDem(file, _frame, options, error).valid(); });
     };
-    holds(demOf(missing, {}), "is not a raster that GDAL can read");
+    holds(demOf(missing, {}), "there is no such file");
     holds(demOf(good, {{}, {}, 0, 100.0}), "give 1 to 16384");
     holds(demOf(good, {{}, {}, 100, -1.0}), "give 0 metres or more");
     holds(demOf(good, {{}, {}, 100, none}), "give 0 metres or more");

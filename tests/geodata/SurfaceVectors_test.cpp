@@ -130,7 +130,7 @@ TEST_F(SurfaceVectors, OfNoUseAreToldWithFileAndMend)
     const std::string far =
         writeLines("far.geojson", R"({"type":"LineString","coordinates":[[10.0,50.0],[10.1,50.1]]})");
     holds(sentence(far, 10.0, white), "nothing in the rectangle");
-    holds(sentence((_folder / "none.geojson").string(), 10.0, white), "check it with ogrinfo");
+    holds(sentence((_folder / "none.geojson").string(), 10.0, white), "there is no such file");
     holds(sentence(_folder.write("text.geojson", "{").string(), 10.0, white), "check it with ogrinfo");
     holds(sentence(raster(4, 4).write(_folder / "r.tif"), 10.0, white), "check it with ogrinfo");
     holds(

@@ -257,6 +257,28 @@ CPLStringList vectorOptions(const std::string& format)
     return options;
 }
 
+/// For a file that no driver of GDAL takes for vector data.
+std::string remedyFor(const std::string& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    std::string start(1024, '\0');
+    stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+    const auto has = [&](const char* words)
+    {
+        return start.find(words) != std::string::npos;
+    };
+    const auto gpsBabel = [&](const char* format)
+    {
+        return std::string("convert it to GPX with gpsbabel -i ") + format + " -f " + file +
+               " -o gpx -F FILE.gpx";
+    };
+    if (has("<TrainingCenterDatabase")) return gpsBabel("gtrnctr");
+    if (start.compare(8, 4, ".FIT") == 0) return gpsBabel("garmin_fit");
+    // Elements with a prefix, as in <g:gpx>.
+    if (has("http://www.topografix.com/GPX/")) return gpsBabel("gpx");
+    return "check it with ogrinfo, or convert it with ogr2ogr";
+}
+
 } // namespace
 
 DatasetPtr openVectors(const std::string& file)
@@ -271,10 +293,7 @@ DatasetPtr openVectors(const std::string& file)
                                          vectorOptions(format).List()));
     if (dataset && format == "CSV") placeCsv(*dataset, file);
     if (dataset && format == "GPX") checkCommas(file);
-    if (!dataset)
-        throw BuildError(
-            file + ": it is not vector data that GDAL can read" +
-            causeAndRemedy(errors.message(), "check it with ogrinfo, or convert it with ogr2ogr") + ".");
+    if (!dataset) throw BuildError(refusalOf(file, "vector data", errors.message(), remedyFor(file)) + ".");
     return dataset;
 }
 

@@ -171,9 +171,17 @@ DatasetPtr RasterFile::openPlain(const std::string& name, const char* const* opt
     const GdalErrorScope errors;
     DatasetPtr dataset = opened(name, options);
     if (!dataset)
-        throw BuildError(
-            name + ": it is not a raster that GDAL can read" +
-            causeAndRemedy(errors.message(), "check it with gdalinfo, or convert it to GeoTIFF") + ".");
+        throw BuildError(refusalOf(name, "a raster", errors.message(),
+                                   "check it with gdalinfo, or convert it to GeoTIFF") +
+                         ".");
+    // The CF conventions' discrete sampling geometries.
+    const GdalErrorScope quiet;
+    const char* const places = dataset->GetMetadataItem("NC_GLOBAL#featureType");
+    for (const char* const each :
+         {"point", "timeSeries", "trajectory", "profile", "timeSeriesProfile", "trajectoryProfile"})
+        if (places && EQUAL(places, each))
+            throw BuildError(name + ": its values are of single places (featureType " + places +
+                             "), not of a raster; bring them to one with gdal_grid.");
     return dataset;
 }
 

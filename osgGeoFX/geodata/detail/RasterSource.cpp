@@ -85,14 +85,6 @@ RasterSource::RasterSource(const std::string& file, RasterKind kind, const Raste
     : _file(file), _bands(bands)
 {
     initialiseGdal();
-    const std::string path = RasterFile::parse(file).first;
-    VSIStatBufL status;
-    const bool isThere = VSIStatL(path.c_str(), &status) == 0;
-    // Other names with a colon are GDAL's own.
-    if (!isThere && path.find(':') == std::string::npos && !TileAddress::is(file))
-        fail("there is no such file; check the path");
-    if (isThere && VSI_ISREG(status.st_mode) && status.st_size == 0)
-        fail("the file is empty; fetch or export it again");
     _chain = RasterFile::open(file);
     const std::string fault = faultOfBlocks(_chain.top());
     if (!fault.empty()) fail(fault);

@@ -124,7 +124,20 @@ std::string causeAndRemedy(const std::string& message, const std::string& usual)
     if (hasAny(message, {"GDALWMS: "}) || namesTile(message))
         return reason +
                "the service sends something that is no picture: check its address and its description";
+    if (hasAny(message, {"No such file or directory"}))
+        return reason + "put that file there, or correct its name in this one";
     return reason + usual;
+}
+
+std::string refusalOf(const std::string& file, const std::string& kind, const std::string& message,
+                      const std::string& usual)
+{
+    if (message == file + ": No such file or directory")
+        return file + ": there is no such file; check the path";
+    VSIStatBufL status;
+    if (VSIStatL(file.c_str(), &status) == 0 && VSI_ISREG(status.st_mode) && status.st_size == 0)
+        return file + ": the file is empty; fetch or export it again";
+    return file + ": it is not " + kind + " that GDAL can read" + causeAndRemedy(message, usual);
 }
 
 bool mayPass(const std::string& message)

@@ -36,6 +36,10 @@ private:
 /// the remedy where the message is of no cause that is known here.
 std::string causeAndRemedy(const std::string& message, const std::string& usual);
 
+/// The sentence, without its full stop, on a file that GDAL cannot open, by the message of GDAL. `kind`: "a raster", "vector data".
+std::string refusalOf(const std::string& file, const std::string& kind, const std::string& message,
+                      const std::string& usual);
+
 /// Whether a message of GDAL's is of a service or its cache, and another try may do soon: the server has failed, was asked too often or sent half
 /// of a tile, or the copy of a tile is broken, which GDAL fetches anew. Not where a server has kept us waiting.
 bool mayPass(const std::string& message);
