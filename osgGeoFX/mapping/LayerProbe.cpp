@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 namespace osgGeoFX
 {
@@ -143,6 +144,28 @@ PagedRaster* rasterOf(const ProjectiveMappings& mappings, const ProjectiveMappin
     return nullptr;
 }
 
+bool saysNothing(const LayerReading& reading)
+{
+    return reading.kind == DataLayer::COLOR ? !reading.color : !reading.value;
+}
+
+/// Of a raster in several frames, as one of the world, the part that has the place counts.
+void dropOtherParts(std::vector<LayerReading>& readings)
+{
+    const auto isOtherPart = [&](const LayerReading& reading)
+    {
+        return saysNothing(reading) && std::any_of(readings.begin(), readings.end(),
+                                                   [&](const LayerReading& other) {
+                                                       return &other != &reading &&
+                                                              other.name == reading.name &&
+                                                              (!saysNothing(other) || &other < &reading);
+                                                   });
+    };
+    std::vector<LayerReading> kept;
+    std::remove_copy_if(readings.begin(), readings.end(), std::back_inserter(kept), isOtherPart);
+    readings = std::move(kept);
+}
+
 /// The other side of the globe has the same places once more.
 bool isBehind(const ProjectiveMappings& mappings, const osg::Vec3d& world,
               const osg::EllipsoidModel* ellipsoid)
@@ -218,6 +241,7 @@ LayerProbe LayerProbe::at(EffectScene& scene, const osg::Vec3d& world)
             probe.readings.push_back(std::move(reading));
         }
     }
+    dropOtherParts(probe.readings);
     return probe;
 }
 
