@@ -456,6 +456,12 @@ TEST_F(DeformedLevels, DebugBoundsAreLines)
     EXPECT_NE(std::memcmp(with.image->data(), without.image->data(), with.image->getTotalSizeInBytes()), 0);
     plain.scene->setDebugBounds(false);
     EXPECT_EQ(harness.frame(true).leaves.size(), without.leaves.size());
+    // Without an effect, too.
+    while (plain.scene->getNumEffects() > 0)
+        plain.scene->removeEffect(plain.scene->getEffect(0));
+    const std::size_t bare = harness.frame(true).leaves.size();
+    plain.scene->setDebugBounds(true);
+    EXPECT_EQ(harness.frame(true).leaves.size(), bare + 1);
 }
 
 TEST_F(DeformedLevels, AForeignDatabaseIsCulledWithoutBeingKnown)

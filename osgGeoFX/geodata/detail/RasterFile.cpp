@@ -113,10 +113,18 @@ void takeFirst(DatasetChain& chain, const std::string& name)
                        ":VARIABLE[DIMENSION=VALUE]" + (timed ? "; --sequence shows all times." : "."));
     }
     else if (band.GetMetadataItem("GRIB_ELEMENT"))
-        remarkOnce(file + " fields the first, " +
-                   std::string(band.GetMetadataItem("GRIB_COMMENT") ? band.GetMetadataItem("GRIB_COMMENT")
-                                                                    : band.GetDescription()) +
-                   ", is taken; cut another one out with gdal_translate -b, or show all with --sequence.");
+    {
+        const char* const comment = band.GetMetadataItem("GRIB_COMMENT");
+        const auto hourOf = [](GDALRasterBand& field)
+        {
+            const char* const seconds = field.GetMetadataItem("GRIB_VALID_TIME");
+            return std::string(seconds ? seconds : "");
+        };
+        const bool timed = hourOf(band) != hourOf(*raster.GetRasterBand(count));
+        remarkOnce(file + " fields the first, " + (comment ? comment : band.GetDescription()) +
+                   ", is taken; cut another one out with gdal_translate -b" +
+                   (timed ? ", or show all times with --sequence." : "."));
+    }
     else
         return;
     addVirtualRaster(chain, {"-b", "1"}, name);

@@ -8,6 +8,7 @@
 #include <osgGeoFX/geodata/detail/RasterFile.h>
 #include <osgGeoFX/geodata/detail/RasterMask.h>
 #include <osgGeoFX/geodata/detail/ReadingErrors.h>
+#include <osgGeoFX/geodata/detail/Remarks.h>
 #include <osgGeoFX/geodata/detail/TileAddress.h>
 #include <osgGeoFX/geodata/detail/VirtualRaster.h>
 
@@ -135,6 +136,10 @@ void RasterSource::openAs(RasterKind kind, const UndeclaredVoids& undeclared)
              "picture with --imagery");
     if (kind != RasterKind::Imagery)
     {
+        const int bands = _chain.top().GetRasterCount() - (alphaOf(_chain.top()) > 0 ? 1 : 0);
+        if (bands > 1)
+            remarkOnce(_file + ": of its " + std::to_string(bands) +
+                       " bands the first is taken; cut another one out with gdal_translate -b.");
         auto mask = std::make_unique<RasterMask>(_chain.top(), std::vector<int>{1}, undeclared);
         if (!mask->isEmpty() && !mask->isNoDataValue())
             RasterMask::addTo(_chain, std::move(mask),

@@ -536,8 +536,9 @@ bool SceneDrawing::cullWithEffects(EffectScene& scene, const Effects& effects, o
     const CameraDepth depth(special && special->getDepthConvention() ? *special->getDepthConvention()
                                                                      : scene.getDepthConvention(),
                             *outer.getProjectionMatrix());
-    const bool wanted = depth.logarithmic() || std::any_of(shown.begin(), shown.end(),
-                                                           [](const auto& each) { return each->isActive(); });
+    const bool wanted =
+        depth.logarithmic() || scene.getDebugBounds() ||
+        std::any_of(shown.begin(), shown.end(), [](const auto& each) { return each->isActive(); });
     const std::optional<CameraRole> role = wanted ? roleOf(scene, outer, special) : std::nullopt;
     TilePrefetch* const prefetch = scene.getPrefetch();
     if (!role)
