@@ -95,6 +95,18 @@ void copyRest(const osg::Program& from, osg::Program& to)
     to.getShaderDefines().insert(defines.begin(), defines.end());
 }
 
+/// What programs have in contexts. OSG itself makes room for a context where it looks for it, without a lock, while the thread of another
+/// context may draw with the program.
+class Contents : public osg::Program
+{
+public:
+    static bool has(const osg::Program& program, unsigned int context)
+    {
+        const auto& all = program.*(&Contents::_pcpList);
+        return context < all.size() && all[context].valid();
+    }
+};
+
 /// Those that releaseAll() finds. Thread-safe.
 class Programs
 {
@@ -158,7 +170,7 @@ void ProfileProgram::watch(osg::Program& program)
 void ProfileProgram::releaseAll(osg::State& state)
 {
     for (const osg::ref_ptr<osg::Program>& program : Programs::instance().living())
-        program->releaseGLObjects(&state);
+        if (Contents::has(*program, state.getContextID())) program->releaseGLObjects(&state);
 }
 
 ProfileProgram::~ProfileProgram() = default;
@@ -223,7 +235,9 @@ osg::ref_ptr<osg::Program> ProfileProgram::core() const
     if (standsInForFixedFunctions())
     {
         warnOfFixedFunctions();
-        return _core = makeNothing();
+        _core = makeNothing();
+        watch(*_core);
+        return _core;
     }
     const std::lock_guard<std::mutex> other(sharing());
     _core = new osg::Program(*this, osg::CopyOp::SHALLOW_COPY);
@@ -235,6 +249,7 @@ osg::ref_ptr<osg::Program> ProfileProgram::core() const
         _core->addShader(translation ? translation->of(*shader) : shader);
     }
     copyRest(*this, *_core);
+    watch(*_core);
     return _core;
 }
 
