@@ -202,7 +202,7 @@ TEST_F(PanoramaStates, ComesAndGoesWithoutATrace)
 
 TEST_F(PanoramaStates, MayChangeFromFrameToFrame)
 {
-    for (int i = 0; i < (fullTest() ? 200 : 12); ++i)
+    for (int i = 0; i < (fullTest() ? 200 : 6); ++i)
     {
         SCOPED_TRACE(i);
         Random random(static_cast<std::uint64_t>(i));
