@@ -177,7 +177,8 @@ TEST_F(MapLabelsTest, NamesOfPlacesInSightAndOfNoOthers)
                                                osg::Vec2d(0, 2), osg::Vec2d(0, -2)})
                 {
                     const auto hit = view.pick(pixel.x() + side.x(), pixel.y() + side.y());
-                    clear = clear && hit && -(view.deform(hit->world) * eye).z() < 0.95 * distance;
+                    clear = hit && -(view.deform(hit->world) * eye).z() < 0.95 * distance;
+                    if (!clear) break;
                 }
                 if (clear)
                 {
