@@ -213,6 +213,7 @@ TEST_F(MapLinesTest, AreDrawnWhereTheirGroundIsToBeSeen)
                             hit ? -(view.deform(hit->world) * camera.getViewMatrix()).z() : HUGE_VAL;
                         before = before && met < 0.95 * distance;
                         clear = clear && met > (side.length2() > 0.0 ? 0.98 : 0.997) * distance;
+                        if (!before && !clear) break;
                     }
                     const bool is = near(*image, pixel.x(), pixel.y(), 1);
                     if (clear)
@@ -395,7 +396,8 @@ TEST_F(MapLinesTest, AreInTheFogOfTheirGround)
                         const auto hit = view.pick(pixel.x() + side.x(), pixel.y() + side.y());
                         const double before =
                             (side.length2() > 0.0 ? 0.98 : 0.997) * static_cast<double>(distance);
-                        hidden = hidden || (hit && distanceOf(hit->world) < before);
+                        hidden = hit && distanceOf(hit->world) < before;
+                        if (hidden) break;
                     }
                     if (hidden) continue;
                     const float clear = linear ? std::clamp((2500.0f - distance) / 1800.0f, 0.0f, 1.0f)
