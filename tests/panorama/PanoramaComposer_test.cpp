@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 using osgGeoFX::PanoramaComposer;
 using osgGeoFX::PanoramaComposition;
@@ -51,6 +53,15 @@ TerrainRelief reliefOf(const std::string& name, int cells = 200)
 
 class PanoramaComposers : public testing::TestWithParam<const char*>
 {
+protected:
+    /// The view that the composer chooses of the terrain, once for all tests.
+    static const PanoramaComposition& chosen(const PanoramaComposer& composer)
+    {
+        static std::map<std::string, PanoramaComposition> known;
+        const auto [view, isNew] = known.try_emplace(GetParam());
+        if (isNew) view->second = composer.compose();
+        return view->second;
+    }
 };
 
 } // namespace
@@ -59,7 +70,7 @@ TEST_P(PanoramaComposers, NothingIsCutOffAndNoEdgeIsSeen)
 {
     const TerrainRelief relief = reliefOf(GetParam());
     const PanoramaComposer composer(relief);
-    const PanoramaComposition view = composer.compose();
+    const PanoramaComposition& view = chosen(composer);
     const PanoramaJudgement seen = composer.judge(view);
     EXPECT_LT(seen.blank, 0.001);
     EXPECT_EQ(seen.cut, 0.0);
@@ -76,10 +87,11 @@ TEST_P(PanoramaComposers, TheChosenViewIsAmongTheBest)
 {
     const TerrainRelief relief = reliefOf(GetParam());
     const PanoramaComposer composer(relief);
-    const PanoramaComposition chosen = composer.compose();
-    const double worth = composer.judge(chosen).worth;
+    const PanoramaComposition& best = chosen(composer);
+    const double worth = composer.judge(best).worth;
     int better = 0;
-    for (std::uint64_t i = 0; i < 50; ++i)
+    const std::uint64_t views = geofx::test::fullTest() ? 50 : 24;
+    for (std::uint64_t i = 0; i < views; ++i)
     {
         geofx::test::Random random(i);
         // Such views as a person might try: the exaggeration fits them.
@@ -93,7 +105,7 @@ TEST_P(PanoramaComposers, TheChosenViewIsAmongTheBest)
         const PanoramaComposition other = PanoramaComposer(relief, wishes).compose();
         better += composer.judge(other).worth > worth ? 1 : 0;
     }
-    EXPECT_LE(better, 4);
+    EXPECT_LE(better, static_cast<int>(views / 12));
 }
 
 INSTANTIATE_TEST_SUITE_P(Terrains, PanoramaComposers,
@@ -250,7 +262,7 @@ TEST_P(PanoramaComposers, LibertiesCutNothingOffAndHideNothing)
 {
     const TerrainRelief relief = reliefOf(GetParam());
     const PanoramaComposer composer(relief);
-    const PanoramaComposition view = composer.compose();
+    const PanoramaComposition& view = chosen(composer);
     const PanoramaJudgement before = composer.judge(view);
     EXPECT_TRUE(composer.liberties(view, 0.0).empty());
     for (const double strength : {PanoramaComposer::usualLiberties, 1.0})
