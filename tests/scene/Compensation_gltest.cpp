@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Combine(
         ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 8, 500},
                           OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 8, 500},
-                          OahuCase{"liberties", "oahu", addRandomLiberties, 12, 200},
+                          OahuCase{"liberties", "oahu", addRandomLiberties, 6, 200},
                           OahuCase{"liberties_projected", "oahu_projected", addRandomLiberties, 6, 200},
                           OahuCase{"panorama", "oahu", addRandomPanorama, 6, 100},
                           OahuCase{"panorama_projected", "oahu_projected", addRandomPanorama, 6, 100},

@@ -5,14 +5,16 @@
 #include <osgGeoFX/effect/Tessellation.h>
 
 #include <osg/GLObjects>
-#include <osg/TriangleFunctor>
+#include <osg/TriangleIndexFunctor>
 #include <osgDB/ReadFile>
 #include <osgUtil/RenderStage>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 namespace geofx::test
 {
@@ -41,29 +43,37 @@ void collect(const osgUtil::RenderBin& bin, std::vector<Culled::Leaf>& leaves)
 /// Whether a triangle in clip space has a point before the eye and within the picture's sides.
 bool visible(const std::array<osg::Vec4d, 3>& corners)
 {
-    std::vector<osg::Vec4d> polygon(corners.begin(), corners.end());
-    const std::array<osg::Vec4d, 5> planes = {osg::Vec4d(1, 0, 0, 1), osg::Vec4d(-1, 0, 0, 1),
-                                              osg::Vec4d(0, 1, 0, 1), osg::Vec4d(0, -1, 0, 1),
-                                              osg::Vec4d(0, 0, 0, 1)};
+    static const std::array<osg::Vec4d, 5> planes = {osg::Vec4d(1, 0, 0, 1), osg::Vec4d(-1, 0, 0, 1),
+                                                     osg::Vec4d(0, 1, 0, 1), osg::Vec4d(0, -1, 0, 1),
+                                                     osg::Vec4d(0, 0, 0, 1)};
+    // Most triangles lie beyond one of the planes.
+    for (const osg::Vec4d& plane : planes)
+        if (corners[0] * plane < 0.0 && corners[1] * plane < 0.0 && corners[2] * plane < 0.0) return false;
+    // Each plane adds one corner at most.
+    std::array<osg::Vec4d, 8> polygon, kept;
+    std::size_t count = corners.size();
+    std::copy(corners.begin(), corners.end(), polygon.begin());
     for (const osg::Vec4d& plane : planes)
     {
-        std::vector<osg::Vec4d> kept;
-        for (std::size_t i = 0; i < polygon.size(); ++i)
+        std::size_t left = 0;
+        for (std::size_t i = 0; i < count; ++i)
         {
             const osg::Vec4d& a = polygon[i];
-            const osg::Vec4d& b = polygon[(i + 1) % polygon.size()];
+            const osg::Vec4d& b = polygon[(i + 1) % count];
             const double da = a * plane;
             const double db = b * plane;
-            if (da >= 0.0) kept.push_back(a);
-            if ((da >= 0.0) != (db >= 0.0)) kept.push_back(a + (b - a) * (da / (da - db)));
+            if (da >= 0.0) kept.at(left++) = a;
+            if ((da >= 0.0) != (db >= 0.0)) kept.at(left++) = a + (b - a) * (da / (da - db));
         }
         polygon.swap(kept);
-        if (polygon.empty()) return false;
+        count = left;
+        if (count == 0) return false;
     }
     // What is gathered in a point covers no pixel.
     const osg::Vec4d& first = polygon[0];
-    for (const osg::Vec4d& corner : polygon)
+    for (std::size_t i = 0; i < count; ++i)
     {
+        const osg::Vec4d& corner = polygon[i];
         if (first.w() < 1e-9 || corner.w() < 1e-9) return true;
         if (std::hypot(corner.x() / corner.w() - first.x() / first.w(),
                        corner.y() / corner.w() - first.y() / first.w()) > 1e-9)
@@ -72,29 +82,45 @@ bool visible(const std::array<osg::Vec4d, 3>& corners)
     return false;
 }
 
+/// Looks at triangles until one is in sight. Each vertex is deformed once, whatever the number of its triangles.
 struct VisibleTriangle
 {
-    void operator()(const osg::Vec3& a, const osg::Vec3& b, const osg::Vec3& c, bool = false)
+    void operator()(unsigned int a, unsigned int b, unsigned int c)
     {
-        if (found) return;
-        const auto place = [this](const osg::Vec3& vertex)
-        {
-            const osg::Vec3d eye = chain->deform(osg::Vec3d(vertex) * modelView);
-            return osg::Vec4d(eye, 1.0) * projection;
-        };
-        found = visible({place(a), place(b), place(c)});
+        if (!found) found = visible({place(a), place(b), place(c)});
+    }
+
+    const osg::Vec4d& place(unsigned int index)
+    {
+        std::optional<osg::Vec4d>& result = places.at(index);
+        if (!result)
+            result = osg::Vec4d(chain->deform(osg::Vec3d(vertices[index]) * modelView), 1.0) * projection;
+        return *result;
     }
 
     const osgGeoFX::DeformationChain* chain = nullptr;
     osg::Matrixd modelView;
     osg::Matrixd projection;
+    const osg::Vec3* vertices = nullptr;
+    std::vector<std::optional<osg::Vec4d>> places; ///< of vertices in clip space
     bool found = false;
+};
+
+class VisibleTriangles : public osg::TriangleIndexFunctor<VisibleTriangle>
+{
+public:
+    using osg::TriangleIndexFunctor<VisibleTriangle>::setVertexArray;
+    void setVertexArray(unsigned int count, const osg::Vec3* given) override
+    {
+        vertices = given;
+        places.assign(count, std::nullopt);
+    }
 };
 
 bool inSight(const Culled::Leaf& leaf, const osg::Matrixd& projection,
              const osgGeoFX::DeformationChain& chain)
 {
-    osg::TriangleFunctor<VisibleTriangle> functor;
+    VisibleTriangles functor;
     functor.chain = &chain;
     functor.modelView = leaf.modelView;
     functor.projection = projection;
