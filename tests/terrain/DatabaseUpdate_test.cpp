@@ -20,6 +20,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <sstream>
 #include <vector>
 
 using namespace osgGeoFX;
@@ -91,15 +92,22 @@ protected:
     }
 
     using Bump = std::function<double(int column, int row)>;
+    /// A file that is again as it was has the time that it had, as from a backup: what a build from nothing gives is known then.
     std::string write(const std::string& name, int column, int row, int columns, int rows, double pixel,
-                      const Bump& height) const
+                      const Bump& height)
     {
         TestRaster raster(columns, rows);
         raster.placed(WEST + column * PIXEL, NORTH - row * PIXEL, pixel, pixel).crs("EPSG:32604");
         raster.dataset().GetRasterBand(1)->SetNoDataValue(-9999.0);
-        return raster.fill([&](int c, int r, int) { return height(c, r); }).write(_folder / name);
+        const std::string file =
+            raster.fill([&](int c, int r, int) { return height(c, r); }).write(_folder / name);
+        std::ostringstream bytes;
+        bytes << std::ifstream(file, std::ios::binary).rdbuf();
+        const auto [time, isNew] = _times.try_emplace({name, bytes.str()}, fs::last_write_time(file));
+        if (!isNew) fs::last_write_time(file, time->second);
+        return file;
     }
-    std::string base(const Bump& bump = {}) const
+    std::string base(const Bump& bump = {})
     {
         return write("base.tif", 0, 0, COLUMNS, ROWS, PIXEL,
                      [&](int c, int r)
@@ -109,8 +117,7 @@ protected:
                      });
     }
     /// Higher ground over a part of the base: 60 × 50 of its pixels, or so many.
-    std::string patch(double pixel = PIXEL, int column = 100, int row = 80, int columns = 60,
-                      int rows = 50) const
+    std::string patch(double pixel = PIXEL, int column = 100, int row = 80, int columns = 60, int rows = 50)
     {
         const double share = pixel / PIXEL;
         return write("patch" + std::to_string(column) + ".tif", column, row,
@@ -147,17 +154,38 @@ protected:
     {
         BuildOptions options = _options;
         options.resume = resume;
-        return buildDatabase(options);
+        const bool first = !fs::exists(database());
+        const BuildSummary summary = buildDatabase(options);
+        if (first) _fresh[sources()] = contents(database());
+        return summary;
     }
     fs::path database() const { return _options.output; }
 
-    /// What a build from nothing gives.
-    Files fromNothing()
+    /// What a build depends on: the options that tests change, and the sources as they are now.
+    std::string sources() const
     {
-        BuildOptions options = _options;
-        options.output = (_folder / ("fresh" + std::to_string(_fresh++))).string();
-        buildDatabase(options);
-        return contents(options.output);
+        const auto& o = _options;
+        std::ostringstream result;
+        result << o.voidReach << ' ' << o.lakeArea << ' ' << o.tileSize << ' ' << o.pixelError << ' '
+               << o.compressTextures << ' ' << o.keep;
+        for (const std::vector<std::string>& files : {o.dems, o.imagery, {o.landCover, o.treeCover}})
+            for (const std::string& file : files)
+                if (!file.empty())
+                    result << '\n' << file << ' ' << fs::last_write_time(file).time_since_epoch().count();
+        return result.str();
+    }
+    /// What a build from nothing gives. Each is made once.
+    const Files& fromNothing()
+    {
+        const auto [files, isNew] = _fresh.try_emplace(sources());
+        if (isNew)
+        {
+            BuildOptions options = _options;
+            options.output = (_folder / ("fresh" + std::to_string(_fresh.size()))).string();
+            buildDatabase(options);
+            files->second = contents(options.output);
+        }
+        return files->second;
     }
 
     /// Updates the database, and compares it with a build from nothing. At most `most` of its files may be written.
@@ -191,7 +219,8 @@ protected:
 
     const TempDir _folder;
     BuildOptions _options;
-    int _fresh = 0;
+    std::map<std::string, Files> _fresh;
+    std::map<std::pair<std::string, std::string>, fs::file_time_type> _times;
 };
 
 INSTANTIATE_TEST_SUITE_P(Grids, DatabaseUpdate,
@@ -416,8 +445,9 @@ TEST_P(DatabaseUpdate, InterruptedWhileFilesTakeTheirPlaces)
             byLevel[name.substr(0, name.find('/', 6))] = name;
     }
     EXPECT_GT(obsolete, 10u);
+    std::size_t number = 0;
     for (const auto& [level, name] : byLevel)
-        obstacles.push_back(name);
+        if (fullTest() || number++ % 2 == 0) obstacles.push_back(name);
     ASSERT_GT(obstacles.size(), 4u);
     int mixed = 0;
     for (const std::string& obstacle : obstacles)
@@ -542,10 +572,12 @@ TEST_P(DatabaseUpdate, ByManyProcesses)
     for (const auto& stage : plan.at("stages"))
     {
         EXPECT_EQ(published(database()), before) << "before " << stage.at("name");
-        for (std::uint64_t unit = stage.at("units"); unit-- > 0;)
+        for (std::uint64_t unit = stage.at("units"); unit > 0;)
         {
-            const std::string range = stage.at("name").get<std::string>() + ":" + std::to_string(unit);
-            const BuiltDatabaseUnits done = buildUnits(_options.output, {range});
+            std::vector<std::string> ranges;
+            while (unit > 0 && ranges.size() < (fullTest() ? 1u : 5u))
+                ranges.push_back(stage.at("name").get<std::string>() + ":" + std::to_string(--unit));
+            const BuiltDatabaseUnits done = buildUnits(_options.output, ranges);
             kept += done.kept;
             built += done.built;
             tiles += done.tilesKept;
