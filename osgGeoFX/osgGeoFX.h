@@ -53,6 +53,7 @@
 #include <osgGeoFX/raster/ColorRampFile.h>
 #include <osgGeoFX/raster/ColorTable.h>
 #include <osgGeoFX/raster/LayerPixels.h>
+#include <osgGeoFX/raster/PictureFile.h>
 #include <osgGeoFX/raster/RasterBands.h>
 
 #include <osgGeoFX/scene/CameraEffects.h>

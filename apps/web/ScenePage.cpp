@@ -3,11 +3,11 @@
 #include "web/ScenePage.h"
 
 #include <osgGeoFX/print/PlacePicture.h>
+#include <osgGeoFX/raster/PictureFile.h>
 #include <osgGeoFX/scene/DepthReader.h>
 #include <osgGeoFX/web/WebPage.h>
 
 #include <CLI/CLI.hpp>
-#include <OpenImageIO/imageio.h>
 #include <osg/Group>
 #include <unistd.h>
 
@@ -98,14 +98,18 @@ void ScenePage::setPicture(const osg::Image& image) const
     const int channels = image.getPixelFormat() == GL_RGB ? 3 : image.getPixelFormat() == GL_RGBA ? 4 : 0;
     if (!channels || image.getDataType() != GL_UNSIGNED_BYTE)
         throw Fault("--web: pictures of this kind of pixels cannot be shown on a page.");
-    OIIO::ImageSpec spec(image.s(), image.t(), channels, OIIO::TypeDesc::UINT8);
-    spec.attribute("compression", "zip");
-    spec.attribute("tiff:zipquality", 1);
-    const auto output = OIIO::ImageOutput::create(_plain);
-    bool good = output && output->open(_plain, spec);
+    osgGeoFX::PictureHeader header;
+    header.width = image.s();
+    header.height = image.t();
+    header.channels = {"R", "G", "B"};
+    if (channels == 4) header.channels.emplace_back("A");
+    header.set("compression", "zip");
+    header.set("tiff:zipquality", 1);
+    const auto output = osgGeoFX::PictureWriter::create(_plain);
+    bool good = output && output->open(_plain, header);
     for (int row = 0; good && row < image.t(); ++row)
-        good = output->write_scanline(row, 0, OIIO::TypeDesc::UINT8,
-                                      image.data(0, static_cast<unsigned int>(image.t() - 1 - row)));
+        good = output->write(image.data(0, static_cast<unsigned int>(image.t() - 1 - row)),
+                             osgGeoFX::PictureNumber::BYTE);
     if (!good || !output->close())
         throw Fault("\"" + _plain +
                     "\" cannot be written; check the folder, its permissions and the disk's space.");

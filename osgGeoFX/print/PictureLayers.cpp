@@ -39,8 +39,7 @@ public:
     Rows(const fs::path& folder, const LayerList::Layer& layer, const TilePlan& plan, double dpi)
         : _width(static_cast<std::size_t>(plan.width)), _channels(layer.channels.size()),
           _values(_width * static_cast<std::size_t>(plan.tileHeight) * _channels),
-          _file(folder / layer.file,
-                {plan.width, plan.height, layer.channels, OIIO::TypeDescFromC<Value>::value(), dpi})
+          _file(folder / layer.file, {plan.width, plan.height, layer.channels, numberOf(Value()), dpi})
     {
     }
     Value* at(int x, int row)
@@ -55,6 +54,10 @@ public:
     void finish() { _file.finish(); }
 
 private:
+    static PictureNumber numberOf(unsigned char) { return PictureNumber::BYTE; }
+    static PictureNumber numberOf(float) { return PictureNumber::FLOAT; }
+    static PictureNumber numberOf(double) { return PictureNumber::DOUBLE; }
+
     std::size_t _width, _channels;
     std::vector<Value> _values;
     LayerFile _file;

@@ -7,9 +7,9 @@
 #include <osgGeoFX/batch/detail/ContentHash.h>
 #include <osgGeoFX/labels/LabelPicture.h>
 #include <osgGeoFX/print/detail/TilePlan.h>
+#include <osgGeoFX/raster/PictureFile.h>
 #include <osgGeoFX/scene/DepthReader.h>
 
-#include <OpenImageIO/imageio.h>
 #include <lcms2.h>
 #include <osg/Group>
 #include <osg/Vec2d>
@@ -51,8 +51,8 @@ public:
 class TileFiles
 {
 public:
-    TileFiles(fs::path folder, std::string key, const OIIO::TypeDesc& type)
-        : _folder(std::move(folder)), _key(std::move(key)), _type(type)
+    TileFiles(fs::path folder, std::string key, PictureNumber number)
+        : _folder(std::move(folder)), _key(std::move(key)), _number(number)
     {
         OwnFolder::take(_folder.string(), "folder");
     }
@@ -65,13 +65,15 @@ public:
     /// How many places of each name a tile shows; nothing where the tile is not there, or is one of another picture.
     std::optional<std::map<std::size_t, std::size_t>> seenIn(const PictureTile& tile) const
     {
-        const auto input = OIIO::ImageInput::open(pathOf(tile).string());
+        const auto input = PictureReader::open(pathOf(tile).string());
         if (!input) return std::nullopt;
-        const OIIO::ImageSpec& spec = input->spec();
-        std::istringstream text(spec.get_string_attribute("ImageDescription"));
+        const PictureHeader& header = input->header();
+        const auto description = header.attributes.find("ImageDescription");
+        if (description == header.attributes.end()) return std::nullopt;
+        std::istringstream text(std::get<std::string>(description->second));
         std::string key;
-        if (!std::getline(text, key) || key != _key || spec.width != tile.width ||
-            spec.height != tile.height || spec.nchannels != 3 || spec.format != _type)
+        if (!std::getline(text, key) || key != _key || header.width != tile.width ||
+            header.height != tile.height || header.channels.size() != 3 || header.number != _number)
             return std::nullopt;
         std::map<std::size_t, std::size_t> seen;
         std::size_t name = 0, count = 0;
@@ -87,17 +89,20 @@ public:
         description << _key << '\n';
         for (const auto& [name, count] : seen)
             description << name << ' ' << count << '\n';
-        OIIO::ImageSpec spec(tile.width, tile.height, 3, _type);
-        spec.attribute("ImageDescription", description.str());
-        spec.attribute("compression", "zip");
-        spec.attribute("tiff:zipquality", 1);
+        PictureHeader header;
+        header.width = tile.width;
+        header.height = tile.height;
+        header.channels = {"R", "G", "B"};
+        header.number = _number;
+        header.set("ImageDescription", description.str());
+        header.set("compression", "zip");
+        header.set("tiff:zipquality", 1);
         const std::string unfinished = temporaryName(pathOf(tile).string());
-        const auto output = OIIO::ImageOutput::create("tiff");
-        bool good = output && output->open(unfinished, spec);
+        const auto output = PictureWriter::create("tiff");
+        bool good = output && output->open(unfinished, header);
         // What a tile draws beyond the picture lies to the right and below.
         for (int row = 0; good && row < tile.height; ++row)
-            good = output->write_scanline(row, 0, _type,
-                                          image.data(0, static_cast<unsigned int>(tileHeight - 1 - row)));
+            good = output->write(image.data(0, static_cast<unsigned int>(tileHeight - 1 - row)), _number);
         good = output && output->close() && good;
         std::error_code fault;
         if (good) fs::rename(unfinished, pathOf(tile), fault);
@@ -113,7 +118,7 @@ public:
 private:
     const fs::path _folder;
     const std::string _key;
-    const OIIO::TypeDesc _type;
+    const PictureNumber _number;
 };
 
 /// What tiles must have been drawn with to be used again; one line.
@@ -163,16 +168,16 @@ std::vector<unsigned char> colorProfile()
 }
 
 /// What tiles and pictures have in each channel.
-OIIO::TypeDesc typeOf(int bits)
+PictureNumber numberOf(int bits)
 {
-    return bits > 8 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
+    return bits > 8 ? PictureNumber::SHORT : PictureNumber::BYTE;
 }
 
 /// Whether the file's format has light and not its code.
 bool isLinear(const std::string& file)
 {
-    const auto output = OIIO::ImageOutput::create(file);
-    return output && std::string(output->format_name()) == "openexr";
+    const auto output = PictureWriter::create(file);
+    return output && output->format() == "openexr";
 }
 
 /// A picture's file, written row by row. It is there when it is whole.
@@ -184,16 +189,20 @@ public:
                 const fs::path& folder)
         : _plan(plan), _whole(file),
           _unfinished(temporaryName((folder / _whole.filename()).string()) + _whole.extension().string()),
-          _output(OIIO::ImageOutput::create(file))
+          _output(PictureWriter::create(file))
     {
         if (!_output)
             throw Fault("\"" + file +
                         "\": pictures of this kind cannot be written; use png, tif, jpg or exr.");
         _linear = isLinear(file);
-        OIIO::ImageSpec spec(plan.width, plan.height, 3, _linear ? OIIO::TypeDesc::HALF : typeOf(bits));
-        describe(spec, options);
-        if (!_output->open(_unfinished.string(), spec)) throw fault();
-        if (_output->spec().format == spec.format) return;
+        PictureHeader header;
+        header.width = plan.width;
+        header.height = plan.height;
+        header.channels = {"R", "G", "B"};
+        header.number = _linear ? PictureNumber::HALF : numberOf(bits);
+        describe(header, options);
+        if (!_output->open(_unfinished.string(), header)) throw fault();
+        if (_output->has(header.number)) return;
         remove();
         throw Fault("\"" + file + "\": pictures of this kind have no " + std::to_string(bits) +
                     " bits for each channel; use png, tif or exr, or take 8 bits.");
@@ -206,8 +215,8 @@ public:
     PictureFile(const PictureFile&) = delete;
     PictureFile& operator=(const PictureFile&) = delete;
 
-    /// A row, whose values have the tiles' type.
-    void write(int row, const unsigned char* values, OIIO::TypeDesc type)
+    /// The next row, whose values are the tiles' numbers.
+    void write(const unsigned char* values, PictureNumber number)
     {
         const void* from = values;
         if (_linear)
@@ -216,9 +225,9 @@ public:
             const auto* codes = reinterpret_cast<const unsigned short*>(values);
             std::transform(codes, codes + _light.size(), _light.begin(), lightOf);
             from = _light.data();
-            type = OIIO::TypeDesc::FLOAT;
+            number = PictureNumber::FLOAT;
         }
-        if (!_output->write_scanline(row, 0, type, from)) throw fault();
+        if (!_output->write(from, number)) throw fault();
     }
     void finish()
     {
@@ -230,26 +239,18 @@ public:
     }
 
 private:
-    void describe(OIIO::ImageSpec& spec, const PicturePrint::Options& options) const
+    void describe(PictureHeader& header, const PicturePrint::Options& options) const
     {
-        spec.attribute("oiio:ColorSpace", _linear ? "Linear" : "sRGB");
+        header.set("oiio:ColorSpace", _linear ? "Linear" : "sRGB");
         const std::vector<unsigned char> profile = _linear ? std::vector<unsigned char>() : colorProfile();
-        if (!profile.empty())
-            spec.attribute("ICCProfile",
-                           OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
-                           profile.data());
-        spec.attribute("compression", "zip");
+        if (!profile.empty()) header.set("ICCProfile", profile);
+        header.set("compression", "zip");
         // Else it would have the hour at which it is written. No number is a date, so it has none.
-        if (std::string(_output->format_name()) == "tiff") spec.attribute("DateTime", 0);
-        if (static_cast<double>(spec.image_bytes()) > 3.9e9) spec.attribute("tiff:bigtiff", 1);
-        if (options.size.dpi > 0.0)
-        {
-            spec.attribute("XResolution", static_cast<float>(options.size.dpi));
-            spec.attribute("YResolution", static_cast<float>(options.size.dpi));
-            spec.attribute("ResolutionUnit", "in");
-        }
+        if (_output->format() == "tiff") header.set("DateTime", 0);
+        if (header.bytes() > 3.9e9) header.set("tiff:bigtiff", 1);
+        header.setDpi(options.size.dpi);
         for (const auto& [name, value] : options.metadata)
-            spec.attribute(name, value);
+            header.set(name, value);
     }
     void remove()
     {
@@ -260,7 +261,7 @@ private:
     }
     Fault fault()
     {
-        const std::string reason = _output->geterror();
+        const std::string reason = _output->error();
         remove();
         return Fault("\"" + _whole.string() + "\" cannot be written (" + reason +
                      "); check the folder, its permissions, the disk's space, and whether the format has "
@@ -269,29 +270,26 @@ private:
 
     const TilePlan& _plan;
     const fs::path _whole, _unfinished;
-    std::unique_ptr<OIIO::ImageOutput> _output;
+    std::unique_ptr<PictureWriter> _output;
     bool _linear = false, _finished = false;
     std::vector<float> _light;
 };
 
 /// Puts the tiles of a row side by side. OSG's rows go upwards.
-void readRow(const TilePlan& plan, const TileFiles& tiles, int row, const OIIO::TypeDesc& type,
-             osg::Image& strip)
+void readRow(const TilePlan& plan, const TileFiles& tiles, int row, PictureNumber number, osg::Image& strip)
 {
-    const std::size_t pixelSize = 3 * type.size();
     for (int column = 0; column < plan.columns; ++column)
     {
         const PictureTile tile = plan.at(column, row);
-        const std::size_t rowSize = pixelSize * static_cast<std::size_t>(tile.width);
-        std::vector<unsigned char> pixels(rowSize * static_cast<std::size_t>(tile.height));
-        const auto input = OIIO::ImageInput::open(tiles.pathOf(tile).string());
-        if (!input || !input->read_image(0, 0, 0, 3, type, pixels.data()))
+        const auto input = PictureReader::open(tiles.pathOf(tile).string());
+        bool good = input && input->header().channels.size() == 3;
+        for (int y = 0; good && y < tile.height; ++y)
+            good = input->read(strip.data(static_cast<unsigned int>(tile.left),
+                                          static_cast<unsigned int>(tile.height - 1 - y)),
+                               number);
+        if (!good)
             throw Fault("The tile \"" + tiles.pathOf(tile).string() +
                         "\" cannot be read any more; run it again.");
-        for (int y = 0; y < tile.height; ++y)
-            std::memcpy(strip.data(static_cast<unsigned int>(tile.left),
-                                   static_cast<unsigned int>(tile.height - 1 - y)),
-                        pixels.data() + static_cast<std::size_t>(y) * rowSize, rowSize);
     }
 }
 
@@ -300,17 +298,17 @@ void assemble(const TilePlan& plan, const TileFiles& tiles, const PicturePrint::
               const std::string& file, const std::function<void(osg::Image&, int)>& drawOver)
 {
     PictureFile picture(plan, options, bits, file, tiles.folder());
-    // Tiles are read in the file's type; those of 16 bits give one of 8, too.
-    const OIIO::TypeDesc type = typeOf(bits);
+    // Tiles are read as the file's numbers; those of 16 bits give one of 8, too.
+    const PictureNumber number = numberOf(bits);
     const osg::ref_ptr<osg::Image> strip = new osg::Image;
     for (int row = 0; row < plan.rows; ++row)
     {
         const int top = plan.at(0, row).top, height = plan.at(0, row).height;
         strip->allocateImage(plan.width, height, 1, GL_RGB, bits > 8 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE);
-        readRow(plan, tiles, row, type, *strip);
+        readRow(plan, tiles, row, number, *strip);
         drawOver(*strip, top);
         for (int y = 0; y < height; ++y)
-            picture.write(top + y, strip->data(0, static_cast<unsigned int>(height - 1 - y)), type);
+            picture.write(strip->data(0, static_cast<unsigned int>(height - 1 - y)), number);
     }
     picture.finish();
 }
@@ -323,7 +321,7 @@ struct PicturePrint::Parts
         : scene(itsScene), options(itsOptions), view(itsView),
           plan(options.size.width, options.size.height, options.tile),
           bits(options.bits > 8 || isLinear(file) ? 16 : 8),
-          tiles(options.work, keyOf(options, plan, view), typeOf(bits)),
+          tiles(options.work, keyOf(options, plan, view), numberOf(bits)),
           depths(options.names ? scene.readDepths() : nullptr)
     {
     }

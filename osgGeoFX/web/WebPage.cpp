@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/web/WebPage.h>
 
+#include <osgGeoFX/raster/PictureFile.h>
 #include <osgGeoFX/web/detail/BakedPage.h>
 #include <osgGeoFX/web/detail/PlaceGrid.h>
 #include <osgGeoFX/web/detail/TilePyramid.h>
 
-#include <OpenImageIO/imageio.h>
 #include <libxml/entities.h>
 #include <nlohmann/json.hpp>
 
@@ -232,24 +232,19 @@ void writePlaces(const fs::path& folder, const WebPlaces& places)
 /// Cuts the picture into tiles. Its size comes back.
 std::pair<int, int> writeTiles(const WebPage::Options& options, const fs::path& folder)
 {
-    const auto input = OIIO::ImageInput::open(options.picture);
+    const auto input = PictureReader::open(options.picture);
     if (!input)
-    {
-        // It keeps the message until somebody asks.
-        OIIO::geterror();
         throw Fault("The picture \"" + options.picture + "\" cannot be read; check its name and its format.");
-    }
-    const OIIO::ImageSpec spec = input->spec();
-    const auto width = static_cast<std::size_t>(spec.width),
-               channels = static_cast<std::size_t>(spec.nchannels);
-    if (spec.tile_width > 0 || channels < 1)
+    const PictureHeader& header = input->header();
+    const std::size_t width = static_cast<std::size_t>(header.width), channels = header.channels.size();
+    if (header.tiled || channels < 1)
         throw Fault("The picture \"" + options.picture + "\" is not stored row by row; write it as PNG.");
-    TilePyramid pyramid(folder.string(), spec.width, spec.height, options.quality);
+    TilePyramid pyramid(folder.string(), header.width, header.height, options.quality);
     std::vector<unsigned char> raw(width * channels), row(width * 3);
-    for (int y = 0; y < spec.height; ++y)
+    for (int y = 0; y < header.height; ++y)
     {
-        if (!input->read_scanline(spec.y + y, 0, OIIO::TypeDesc::UINT8, raw.data()))
-            throw Fault("The picture \"" + options.picture + "\" cannot be read (" + input->geterror() +
+        if (!input->read(raw.data(), PictureNumber::BYTE))
+            throw Fault("The picture \"" + options.picture + "\" cannot be read (" + input->error() +
                         "); write it again.");
         // Gray ones have one channel, perhaps with a second one for what is clear.
         for (std::size_t x = 0; x < width; ++x)
@@ -257,7 +252,7 @@ std::pair<int, int> writeTiles(const WebPage::Options& options, const fs::path& 
                 row[3 * x + channel] = raw[channels * x + (channels > 2 ? channel : 0)];
         pyramid.add(row.data());
     }
-    return {spec.width, spec.height};
+    return {header.width, header.height};
 }
 
 void writeLeaflet(const fs::path& from, const fs::path& to)

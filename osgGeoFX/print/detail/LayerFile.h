@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <OpenImageIO/imageio.h>
+#include <osgGeoFX/raster/PictureFile.h>
 
 #include <filesystem>
 #include <memory>
@@ -28,7 +28,7 @@ public:
     {
         int width = 0, height = 0;
         std::vector<std::string> channels; ///< their names; a fourth one of colors is straight alpha
-        OIIO::TypeDesc type = OIIO::TypeDesc::UINT8;
+        PictureNumber number = PictureNumber::BYTE;
         double dpi = 0.0;
     };
 
@@ -37,7 +37,7 @@ public:
     LayerFile(const LayerFile&) = delete;
     LayerFile& operator=(const LayerFile&) = delete;
 
-    /// Writes the next rows; `data`: of the format's type, from the uppermost row.
+    /// Writes the next rows; `data`: of the format's numbers, from the uppermost row.
     void write(int rows, const void* data);
     void finish();
 
@@ -47,8 +47,7 @@ private:
     const std::filesystem::path _file;
     const std::filesystem::path _unfinished;
     const Format _format;
-    std::unique_ptr<OIIO::ImageOutput> _output;
-    int _row = 0;
+    std::unique_ptr<PictureWriter> _output;
     bool _finished = false;
 };
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/web/detail/TilePyramid.h>
 
-#include <OpenImageIO/imageio.h>
+#include <osgGeoFX/raster/PictureFile.h>
 
 #include <algorithm>
 #include <array>
@@ -161,18 +161,22 @@ void TilePyramid::writeStrip(const Level& level) const
         const std::string file = (fs::path(_folder) / std::to_string(level.number) / std::to_string(column) /
                                   (std::to_string(level.stripNumber) + ".jpg"))
                                      .string();
-        OIIO::ImageSpec spec(width, level.stripRows, 3, OIIO::TypeDesc::UINT8);
-        spec.attribute("oiio:ColorSpace", "sRGB");
-        spec.attribute("Compression", "jpeg:" + std::to_string(_quality));
+        PictureHeader header;
+        header.width = width;
+        header.height = level.stripRows;
+        header.channels = {"R", "G", "B"};
+        header.set("oiio:ColorSpace", "sRGB");
+        header.set("Compression", "jpeg:" + std::to_string(_quality));
         // Painted strokes are narrow, so colors have all pixels.
-        spec.attribute("jpeg:subsampling", "4:4:4");
-        const auto output = OIIO::ImageOutput::create(file);
-        const bool good = output && output->open(file, spec) &&
-                          output->write_image(OIIO::TypeDesc::UINT8,
-                                              level.strip.data() + 3 * static_cast<std::size_t>(left), 3,
-                                              3 * static_cast<OIIO::stride_t>(level.width)) &&
-                          output->close();
-        if (!good)
+        header.set("jpeg:subsampling", "4:4:4");
+        const auto output = PictureWriter::create(file);
+        bool good = output && output->open(file, header);
+        for (int row = 0; good && row < level.stripRows; ++row)
+            good = output->write(level.strip.data() + 3 * (static_cast<std::size_t>(row) *
+                                                               static_cast<std::size_t>(level.width) +
+                                                           static_cast<std::size_t>(left)),
+                                 PictureNumber::BYTE);
+        if (!good || !output->close())
             throw std::runtime_error(
                 "The tile \"" + file +
                 "\" cannot be written; check the folder's permissions and the disk's space.");
