@@ -168,6 +168,31 @@ private:
         return order;
     }
 
+    /// The steepest of a cell's eight neighbours, or the cell itself if none is lower.
+    int steepestFrom(int column, int row) const
+    {
+        const int cell = index(column, row);
+        const bool inner = column > 0 && row > 0 && column < side - 1 && row < side - 1;
+        const double height = _height[static_cast<std::size_t>(cell)];
+        double steepest = 0.0;
+        int lowest = cell;
+        for (int y = -1; y <= 1; ++y)
+        {
+            for (int x = -1; x <= 1; ++x)
+            {
+                if (!inner && (column + x < 0 || column + x >= side || row + y < 0 || row + y >= side))
+                    continue;
+                const int other = cell + y * side + x;
+                const double drop = height - _height[static_cast<std::size_t>(other)];
+                const double fall = x != 0 && y != 0 ? drop / diagonal : drop;
+                // Without a branch, which processors could not foresee.
+                lowest = fall > steepest ? other : lowest;
+                steepest = std::max(fall, steepest);
+            }
+        }
+        return lowest;
+    }
+
     void grow()
     {
         // Water goes to the steepest of eight neighbours.
@@ -177,22 +202,8 @@ private:
             for (int column = 0; column < side; ++column)
             {
                 const int cell = index(column, row);
-                double steepest = 0.0;
-                to[static_cast<std::size_t>(cell)] = cell;
-                if (_end[static_cast<std::size_t>(cell)]) continue;
-                for (int y = std::max(row - 1, 0); y <= std::min(row + 1, side - 1); ++y)
-                {
-                    for (int x = std::max(column - 1, 0); x <= std::min(column + 1, side - 1); ++x)
-                    {
-                        const double drop = _height[static_cast<std::size_t>(cell)] -
-                                            _height[static_cast<std::size_t>(index(x, y))];
-                        if (drop <= steepest) continue;
-                        const double fall = drop / (x != column && y != row ? diagonal : 1.0);
-                        if (fall <= steepest) continue;
-                        steepest = fall;
-                        to[static_cast<std::size_t>(cell)] = index(x, y);
-                    }
-                }
+                to[static_cast<std::size_t>(cell)] =
+                    _end[static_cast<std::size_t>(cell)] ? cell : steepestFrom(column, row);
             }
         }
         const std::vector<int> order = upstream(to);
