@@ -23,9 +23,8 @@ void ask(PictureFileRequest& request)
         osgDB::Registry::instance()->getReaderWriterForExtension("geofxpictures");
     if (!plugin)
         throw std::runtime_error(
-            "\"" + request.read + request.write +
-            "\" needs the OSG plugin osgdb_geofxpictures, which was not found or lacks its libraries "
-            "(OpenImageIO); put its folder on OSG_LIBRARY_PATH.");
+            "The OSG plugin osgdb_geofxpictures, which reads and writes pictures, was not found or lacks its "
+            "libraries (OpenImageIO); put its folder on OSG_LIBRARY_PATH.");
     const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
     options->setPluginStringData("version", GEOFX_VERSION);
     options->setPluginData("request", &request);
