@@ -7,6 +7,7 @@
 #include <tools/InventedTerrain.h>
 #include <tools/OahuScene.h>
 #include <tools/PagedScene.h>
+#include <tools/RandomSamples.h>
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
 
@@ -254,7 +255,7 @@ TEST_F(FilmProgram, PlansTellWhatTheyCannotDo)
 // The tiles of a print are drawn by several processes, which are killed; the print has the bytes of one process.
 TEST_F(FilmProgram, ManyProcessesDrawThePrintOfOne)
 {
-    inventTerrain("volcano", file("volcano.tif"), 201);
+    inventTerrain("volcano", file("volcano.tif"), fullTest() ? 201 : 101);
     fs::create_directories(_folder / "one");
     for (const std::string name : {"map.tif", "map.pdf"})
     {
