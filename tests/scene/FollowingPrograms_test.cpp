@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <set>
 #include <string>
 #include <vector>
@@ -32,6 +33,21 @@ public:
 
 protected:
     ~TintedProgram() override = default;
+};
+
+/// A program at the address of the one before, of which there is one at a time.
+class PlacedProgram : public osg::Program
+{
+public:
+    explicit PlacedProgram(const osg::Program& other) : osg::Program(other, osg::CopyOp::SHALLOW_COPY) {}
+    static void* operator new(std::size_t) { return _memory; }
+    static void operator delete(void*) {}
+
+protected:
+    ~PlacedProgram() override = default;
+
+private:
+    alignas(osg::Program) inline static unsigned char _memory[sizeof(osg::Program)];
 };
 
 const osg::Program* programOf(const osg::StateSet* state)
@@ -105,6 +121,31 @@ TEST(FollowingPrograms, OthersAreLeftAsTheyAre)
     own->addShader(new osg::Shader(osg::Shader::VERTEX, "void main() {}\n"));
     EXPECT_FALSE(following.of(*own));
     EXPECT_TRUE(following.programs().empty());
+}
+
+// A program may be out of sight while the effects change.
+TEST(FollowingPrograms, FunctionsAtTheAddressOfFormerOnesAreOthers)
+{
+    const osg::ref_ptr<osg::Program> ordinary = new osg::Program;
+    ordinary->addShader(new osg::Shader(osg::Shader::VERTEX, "void main() {}\n"));
+    EffectProgram::addFunctions(*ordinary, {});
+    const EffectProgram::Effects bird = {new BirdsEyeView};
+    for (const osg::ref_ptr<osg::Program>& program : {ordinary, osg::ref_ptr<osg::Program>(makeProgram())})
+    {
+        FollowingPrograms following;
+        osg::ref_ptr<osg::Program> effects = new PlacedProgram(*EffectProgram::create({}));
+        following.follow(*effects);
+        EXPECT_TRUE(following.of(*program));
+        following.follow(*osg::ref_ptr<osg::Program>(EffectProgram::create({})));
+        effects = nullptr;
+        effects = new PlacedProgram(*EffectProgram::create(bird));
+        following.follow(*effects);
+        const osg::ref_ptr<osg::StateSet> state = following.of(*program);
+        const osg::Program* copy = programOf(state);
+        ASSERT_TRUE(copy);
+        const osg::Shader& last = *copy->getShader(copy->getNumShaders() - 1);
+        EXPECT_EQ(last.getShaderSource(), EffectProgram::functions(bird, last.getType()));
+    }
 }
 
 TEST(FollowingPrograms, AChangeMakesANewCopyAndLeavesTheFormerOne)

@@ -89,7 +89,8 @@ void addFunctions(const osg::Program& program, const osg::Program& functions, os
 bool FollowingPrograms::Copy::isOf(const osg::Program& original, const osg::Program& wanted,
                                    bool adapts) const
 {
-    if (functions != &wanted || adapted != adapts) return false;
+    // Others may come to the address of former ones.
+    if (functions.get() != &wanted || adapted != adapts) return false;
     for (const GLenum parameter :
          {GL_GEOMETRY_VERTICES_OUT_EXT, GL_GEOMETRY_INPUT_TYPE_EXT, GL_GEOMETRY_OUTPUT_TYPE_EXT})
     {
