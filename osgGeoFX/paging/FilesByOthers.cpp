@@ -4,7 +4,7 @@
 
 #include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/paging/detail/DatabaseContent.h>
-#include <osgGeoFX/paging/detail/PictureHeader.h>
+#include <osgGeoFX/paging/detail/PictureStart.h>
 
 #include <osg/ImageStream>
 #include <osgDB/FileNameUtils>
@@ -88,7 +88,7 @@ ReadResult attempt(const Read& read)
 
 osg::ref_ptr<osg::Image> pictureOf(const std::string& content, std::string& reason)
 {
-    const std::optional<PictureHeader> header = pictureHeaderOf(content);
+    const std::optional<PictureStart> header = pictureStartOf(content);
     if (!header)
     {
         reason = "it is not PNG, JPEG, GIF, BMP or DDS";

@@ -9,13 +9,13 @@ namespace osgGeoFX
 {
 
 /// What the first bytes of a picture say.
-struct PictureHeader
+struct PictureStart
 {
     const char* reader = ""; ///< the extension for which OSG's plugin is asked
     double bytes = 0.0;      ///< of all pixels when they are unpacked, at most
 };
 
 /// Nothing where the content is not PNG, JPEG, GIF, BMP or DDS.
-std::optional<PictureHeader> pictureHeaderOf(const std::string& content);
+std::optional<PictureStart> pictureStartOf(const std::string& content);
 
 } // namespace osgGeoFX

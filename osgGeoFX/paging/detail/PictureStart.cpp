@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/paging/detail/PictureHeader.h>
+#include <osgGeoFX/paging/detail/PictureStart.h>
 
 #include <algorithm>
 #include <cmath>
@@ -129,16 +129,16 @@ double bytesOfDds(const Bytes& dds)
 
 } // namespace
 
-std::optional<PictureHeader> pictureHeaderOf(const std::string& content)
+std::optional<PictureStart> pictureStartOf(const std::string& content)
 {
     const Bytes bytes(content);
-    if (bytes.startsWith("\x89PNG\r\n\x1a\n")) return PictureHeader{"png", bytesOfPng(bytes)};
-    if (bytes.startsWith("\xff\xd8\xff")) return PictureHeader{"jpeg", bytesOfJpeg(bytes)};
+    if (bytes.startsWith("\x89PNG\r\n\x1a\n")) return PictureStart{"png", bytesOfPng(bytes)};
+    if (bytes.startsWith("\xff\xd8\xff")) return PictureStart{"jpeg", bytesOfJpeg(bytes)};
     if (bytes.startsWith("GIF87a") || bytes.startsWith("GIF89a"))
-        return PictureHeader{"gif", bytesOfGif(bytes)};
-    if (bytes.startsWith("BM") && bytes.size() > 26) return PictureHeader{"bmp", bytesOfBmp(bytes)};
+        return PictureStart{"gif", bytesOfGif(bytes)};
+    if (bytes.startsWith("BM") && bytes.size() > 26) return PictureStart{"bmp", bytesOfBmp(bytes)};
     if (bytes.startsWith("DDS ") && bytes.little(4, 4) == 124.0)
-        return PictureHeader{"dds", bytesOfDds(bytes)};
+        return PictureStart{"dds", bytesOfDds(bytes)};
     return std::nullopt;
 }
 
