@@ -374,7 +374,7 @@ void check(const Arguments& arguments, const geofx::plan::Division& division, co
         throw Failure(
             badInput,
             "--values is for one picture that is drawn at once; leave --path out, and take a --size in "
-            "pixels, up to 4096.");
+            "pixels, up to 4096, with --bits 8.");
     if (arguments.web.wanted() && film)
         throw Failure(badInput, "--web shows one picture; leave --path out, or --web.");
     if (division.any() && !film && !geofx::print::isPrint(arguments.print, arguments.output, size))
