@@ -161,9 +161,9 @@ void TilePrefetch::setPath(Path path, const osg::Camera* camera)
     auto& paths = _parts->paths;
     paths.erase(std::remove_if(paths.begin(), paths.end(),
                                [&](const Parts::Led& each) {
-                                   return camera
-                                              ? each.camera == camera || (!each.all && !each.camera.valid())
-                                              : each.all;
+                                   return camera ? each.camera.get() == camera ||
+                                                       (!each.all && !each.camera.valid())
+                                                 : each.all;
                                }),
                 paths.end());
     if (path) paths.push_back({!camera, camera, std::move(path)});
@@ -243,7 +243,7 @@ const TilePrefetch::Path* TilePrefetch::Parts::pathOf(const Seen& seen) const
     if (!seen.leader.lock(camera)) return nullptr;
     const Led* found = nullptr;
     for (const Led& each : paths)
-        if (each.camera == camera.get() || (each.all && !found)) found = &each;
+        if (each.camera.get() == camera.get() || (each.all && !found)) found = &each;
     return found ? &found->path : nullptr;
 }
 

@@ -168,12 +168,13 @@ osg::ref_ptr<osg::Geometry> geometryOf(osg::Vec3Array* vertices, osg::Array* sha
 
 bool ContourFence::isKnown(const RegionOfInterest& region, const std::vector<Ground>& ground) const
 {
-    return _wall && _region == &region && _revision == region.revision() && ground.size() == _known.size() &&
+    return _wall && _region.get() == &region && _revision == region.revision() &&
+           ground.size() == _known.size() &&
            std::equal(ground.begin(), ground.end(), _known.begin(),
                       [](const Ground& now, const Known& known)
                       {
                           const osg::Geometry* geometry = now.drawable->asGeometry();
-                          return known.drawable == now.drawable.get() && known.drawable.valid() &&
+                          return known.drawable.get() == now.drawable.get() &&
                                  same(now.toRegion, known.toRegion) &&
                                  (!geometry || known.stamp.matches(*geometry));
                       });
