@@ -146,7 +146,7 @@ public:
         _view = std::make_unique<OffscreenView>(_size, FIELD_OF_VIEW, _root);
         const float scale =
             osgGeoFX::lodScaleFor(*scene->terrain, osgGeoFX::pixelsPerRadian(_size.height, FIELD_OF_VIEW));
-        _view->camera().setLODScale(settings.smoke ? 8.0f : scale);
+        _view->camera().setLODScale(settings.smoke ? 32.0f : scale);
     }
 
     std::vector<Figure> measure(const Case& each)

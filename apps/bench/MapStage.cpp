@@ -57,9 +57,9 @@ osgGeoFX::TerrainRelief MapStage::relief(const Settings& settings) const
 std::unique_ptr<OffscreenView> MapStage::draw(osg::Node& root, const Settings& settings) const
 {
     const OffscreenView::Size size =
-        settings.smoke ? OffscreenView::Size{320, 180} : OffscreenView::Size{1600, 900};
+        settings.smoke ? OffscreenView::Size{160, 90} : OffscreenView::Size{1600, 900};
     auto drawing = std::make_unique<OffscreenView>(size, fieldOfView, &root);
-    drawing->camera().setLODScale((settings.smoke ? 4.0f : 1.0f) * scene.lodScale(size.height, fieldOfView));
+    drawing->camera().setLODScale((settings.smoke ? 16.0f : 1.0f) * scene.lodScale(size.height, fieldOfView));
     drawing->look(matrix);
     drawing->settle();
     return drawing;

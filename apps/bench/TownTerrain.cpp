@@ -48,7 +48,7 @@ std::filesystem::path townToDraw(const Settings& settings, const std::filesystem
     if (settings.smoke)
     {
         elevation = folder / "elevation.vrt";
-        writeResampledOahu(oahu / "elevation.tif", 256, elevation);
+        writeResampledOahu(oahu / "elevation.tif", 128, elevation);
     }
     announce("making up a town, and an aerial picture of it");
     runChild({settings.inventor.string(), "town", town.string(), settings.smoke ? "400" : "16000"});

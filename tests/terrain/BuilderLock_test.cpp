@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <csignal>
 #include <filesystem>
 #include <string>
@@ -56,17 +57,23 @@ TEST_F(BuilderLock, TheSecondBuildEndsWithASentence)
         const std::string database = path("db" + std::to_string(attempt));
         ProgramResult second;
         bool inTime = false;
+        std::atomic<bool> ended{false};
         std::thread visitor;
         ProgramOptions options;
         options.seconds = 0.0; // else another program stands between
         options.runs = [&](pid_t process)
         {
-            if (process == 0) return;
+            if (process == 0)
+            {
+                ended = true;
+                return;
+            }
             visitor = std::thread(
                 [&, process]
                 {
-                    while (!fs::exists(database + "/built-from.txt"))
+                    while (!ended && !fs::exists(database + "/built-from.txt"))
                         std::this_thread::yield();
+                    if (ended) return;
                     kill(process, SIGSTOP);
                     inTime = !fs::exists(database + "/terrain.osgb");
                     second = build({"--dem", _other, "-o", database});
