@@ -771,7 +771,7 @@ TEST(TownBuilder, RefusalsAreSentencesAndLeaveTheDatabase)
         EXPECT_EQ(text.empty() ? ' ' : text.back(), '.') << text;
         EXPECT_EQ(before, contents(database));
     };
-    refused(optionsOf(database, (folder / "none.gpkg").string()), "not vector data that GDAL can read");
+    refused(optionsOf(database, (folder / "none.gpkg").string()), "there is no such file; check the path");
     refused(optionsOf((folder / "nothing").string(), good), "no finished terrain database");
     TownOptions options = optionsOf(database, good);
     options.heightField = "altitude";
