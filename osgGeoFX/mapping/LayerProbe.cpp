@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <iterator>
 
 namespace osgGeoFX
 {
@@ -149,20 +148,19 @@ bool saysNothing(const LayerReading& reading)
     return reading.kind == DataLayer::COLOR ? !reading.color : !reading.value;
 }
 
-/// Of a raster in several frames, as one of the world, the part that has the place counts.
-void dropOtherParts(std::vector<LayerReading>& readings)
+/// Of a raster in several frames, as one of the world, the part that has the place counts. Two rasters of one frame may have the same name.
+/// `frames`: the effect that has each reading.
+void dropOtherParts(std::vector<LayerReading>& readings, const std::vector<unsigned int>& frames)
 {
-    const auto isOtherPart = [&](const LayerReading& reading)
-    {
-        return saysNothing(reading) && std::any_of(readings.begin(), readings.end(),
-                                                   [&](const LayerReading& other) {
-                                                       return &other != &reading &&
-                                                              other.name == reading.name &&
-                                                              (!saysNothing(other) || &other < &reading);
-                                                   });
-    };
     std::vector<LayerReading> kept;
-    std::remove_copy_if(readings.begin(), readings.end(), std::back_inserter(kept), isOtherPart);
+    for (std::size_t i = 0; i < readings.size(); ++i)
+    {
+        bool isOtherPart = false;
+        for (std::size_t k = 0; k < readings.size() && saysNothing(readings[i]); ++k)
+            isOtherPart = isOtherPart || (frames[k] != frames[i] && readings[k].name == readings[i].name &&
+                                          (k < i || !saysNothing(readings[k])));
+        if (!isOtherPart) kept.push_back(readings[i]);
+    }
     readings = std::move(kept);
 }
 
@@ -226,6 +224,7 @@ LayerProbe LayerProbe::at(EffectScene& scene, const osg::Vec3d& world)
     probe.world = world;
     const osg::ref_ptr<const osg::EllipsoidModel> ellipsoid = scene.ground().ellipsoid;
     LayerPlayer* const player = LayerPlayer::of(scene);
+    std::vector<unsigned int> frames;
     // What is drawn last lies on top.
     for (unsigned int i = scene.getNumEffects(); i-- > 0;)
     {
@@ -239,9 +238,10 @@ LayerProbe LayerProbe::at(EffectScene& scene, const osg::Vec3d& world)
                 if (sequence->getLayer() == reading.mapping->getLayer()) reading.sequence = sequence;
             }
             probe.readings.push_back(std::move(reading));
+            frames.push_back(i);
         }
     }
-    dropOtherParts(probe.readings);
+    dropOtherParts(probe.readings, frames);
     return probe;
 }
 
