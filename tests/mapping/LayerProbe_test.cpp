@@ -129,6 +129,35 @@ TEST_F(Probe, NoDataCountsForNothing)
     EXPECT_DOUBLE_EQ(*at(600.0, -500.0)[0].value, 7.0);
 }
 
+// A raster of the world has a part in each of several effects. Two rasters of one effect may have the same name.
+TEST_F(Probe, OfARasterInSeveralFramesThePartWithDataCounts)
+{
+    const auto everywhere = [](double value)
+    {
+        const osg::ref_ptr<DataLayer> layer = values(2, [value](double, double) { return value; });
+        layer->setNoData(-999.0);
+        return layer;
+    };
+    const auto texts = [&]
+    {
+        std::vector<std::string> result;
+        for (const LayerReading& reading : at(0.0, 0.0))
+            result.push_back(reading.text());
+        return result;
+    };
+    const osg::ref_ptr<ProjectiveMappings> other = new ProjectiveMappings;
+    other->addMapping(mappingOf(everywhere(-999.0), "world"));
+    _scene->addEffect(other);
+    add(everywhere(-999.0), "world");
+    EXPECT_EQ(texts(), std::vector<std::string>{"world: no data"});
+    _mappings->removeMapping(_mappings->getMapping(0));
+    add(everywhere(7.0), "world");
+    EXPECT_EQ(texts(), std::vector<std::string>{"world: 7"});
+    _scene->removeEffect(other);
+    add(everywhere(-999.0), "world");
+    EXPECT_EQ(texts().size(), 2u) << "two rasters";
+}
+
 TEST_F(Probe, ReadsClassesByTheirNames)
 {
     const osg::ref_ptr<DataLayer> layer = values(2, [](double x, double) { return x < 0.0 ? 10.0 : 20.0; });
