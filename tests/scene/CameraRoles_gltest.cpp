@@ -324,9 +324,8 @@ TEST_F(CameraRoles, AReplacementMayHaveAnyValues)
     const osg::ref_ptr<BirdsEyeView> bend = makeBend();
     const osg::ref_ptr<EffectScene> scene = sceneWith({bend});
     const osg::ref_ptr<osg::Image> bent = render(scene);
-    CameraEffects& own = CameraEffects::of(camera());
     const osg::ref_ptr<BirdsEyeView> other = makeBend();
-    ASSERT_TRUE(own.setReplacement(*bend, other));
+    ASSERT_TRUE(CameraEffects::of(camera()).setReplacement(*bend, other));
     EXPECT_TRUE(same(*render(scene), *bent));
     const std::function<void()> changes[] = {[&] { other->setContextSaturation(0.0); },
                                              [&] { other->setCurve(PerspectiveBend::CIRCULAR_ARC); },
@@ -337,6 +336,8 @@ TEST_F(CameraRoles, AReplacementMayHaveAnyValues)
                                              }};
     for (const std::function<void()>& change : changes)
     {
+        // The object goes with the camera's user data, below.
+        CameraEffects& own = CameraEffects::of(camera());
         // While it is a replacement, and before it becomes one.
         change();
         const osg::ref_ptr<osg::Image> changed = render(scene);
