@@ -64,6 +64,13 @@ public:
     mutable DrawnLeaves leaves;
 };
 
+/// Draws nothing of a stage itself. What is drawn before it, into textures, remains.
+class DrawNothing : public osgUtil::RenderBin::DrawCallback
+{
+public:
+    void drawImplementation(osgUtil::RenderBin*, osg::RenderInfo&, osgUtil::RenderLeaf*&) override {}
+};
+
 /// Leaves the frame in the back buffer of an X11 pbuffer, which has no screen; Mesa reports an X error for each swap.
 struct NoSwap : public osg::GraphicsContext::SwapCallback
 {
@@ -128,6 +135,7 @@ struct SceneRenderer::Parts
     osg::ref_ptr<osg::Camera> whole = new osg::Camera; ///< of the picture; it draws nothing
     osg::Vec2d corner;                                 ///< of the tile in the picture, pixels
     double pixelError = 0.0;
+    bool hasDrawn = false; ///< some view, whose tiles are in memory
     std::string rendererName;
     std::string glVersion;
     unsigned int samples = 0;
@@ -137,6 +145,7 @@ struct SceneRenderer::Parts
     void look(const osg::Matrixd& view);
     void setUpScene(const Scene& scene);
     bool describe(osg::GraphicsContext& context);
+    void setDraws(bool draws);
     osg::ref_ptr<osg::Image> frame(double time, FrameStatistics& statistics);
     std::uint64_t leastTriangles() const;
 };
@@ -225,6 +234,18 @@ bool SceneRenderer::Parts::describe(osg::GraphicsContext& context)
     samples = static_cast<unsigned int>(count);
     context.releaseContext();
     return true;
+}
+
+/// Whether the next frames draw their pictures. While tiles are on their way only the culling counts, which requests them.
+void SceneRenderer::Parts::setDraws(bool draws)
+{
+    const osg::ref_ptr<DrawNothing> nothing = draws ? nullptr : new DrawNothing;
+    for (const osg::ref_ptr<osg::Camera>& each : cameras)
+    {
+        auto* renderer = dynamic_cast<osgViewer::Renderer*>(each->getRenderer());
+        // The single-threaded model uses the first of the renderer's two scene views only.
+        if (renderer) renderer->getSceneView(0)->getRenderStage()->setDrawCallback(nothing);
+    }
 }
 
 osg::ref_ptr<osg::Image> SceneRenderer::Parts::frame(double time, FrameStatistics& statistics)
@@ -326,17 +347,21 @@ osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double 
     parts.look(view);
     parts.monitor->restart();
     osg::ref_ptr<osg::Image> image;
+    // A first view lacks nearly all of its tiles, a later one often none.
+    bool draws = parts.hasDrawn || !parts.options.waitForTiles;
     for (bool done = false; !done;)
     {
+        parts.setDraws(draws);
         image = parts.frame(time, statistics);
         if (!image)
         {
             error = "The frame could not be read back; check the OpenGL driver.";
             return nullptr;
         }
-        done = parts.monitor->frameFinished() || !parts.options.waitForTiles;
-        const bool waits = done && parts.options.waitForTiles && !hasAllData(*parts.effects);
-        done = done && !waits;
+        const bool here = parts.monitor->frameFinished() || !parts.options.waitForTiles;
+        const bool waits = here && draws && parts.options.waitForTiles && !hasAllData(*parts.effects);
+        done = here && draws && !waits;
+        draws = here;
         const double left = parts.options.timeout - secondsSince(start);
         if (!done && left <= 0.0)
         {
@@ -349,9 +374,10 @@ osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double 
         // What mappings read has threads of its own.
         if (waits)
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        else if (!done)
+        else if (!here)
             parts.monitor->waitForReads(left);
     }
+    parts.hasDrawn = true;
     const PagerMonitor::Progress progress = parts.monitor->takeProgress();
     statistics.tilesLoaded = progress.tilesLoaded;
     statistics.bytesRead = progress.bytesRead;

@@ -38,7 +38,8 @@ struct FrameStatistics
 
     The same calls give the same bytes, whatever the pager's threads do: an image is taken from a frame that requested
     no more tiles, opaque objects are drawn in the order of the scene graph, and time stands still within an image. An
-    image takes one frame if it has no tiles to wait for, or if waitForTiles is false. The LOD scale follows the
+    image takes one frame if it has no tiles to wait for, or if waitForTiles is false; frames that wait for tiles are
+    culled and not drawn, and so is the first frame of a renderer. The LOD scale follows the
     terrain's pixel-error bound. One thread at a time uses one renderer. Several renderers may exist at once, each with
     its own scene.
     @ingroup offscreen */
