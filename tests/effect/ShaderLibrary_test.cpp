@@ -396,13 +396,13 @@ TEST(ShaderLibrary, ThePutTogetherStagesAreAcceptedByGlslangValidator)
     for (const EffectProgram::Effects& effects : lists)
     {
         SCOPED_TRACE(EffectProgram::key(effects));
-        // Every define on; off and on by chance, for the shortest and the longest.
+        // Every define on; for the shortest and the longest also off, and in the full test on by chance.
         Random random(effects.size());
         expectProgramAccepted(effects, random, 1.0);
         if (effects.empty() || effects.size() > 2)
         {
             expectProgramAccepted(effects, random, 0.0);
-            expectProgramAccepted(effects, random, 0.5);
+            if (geofx::test::fullTest()) expectProgramAccepted(effects, random, 0.5);
         }
     }
 }

@@ -168,7 +168,7 @@ struct Plain
 
 TEST_F(DeformedLevels, NearAndFarContainWhatIsDrawn)
 {
-    const int count = fullTest() ? 300 : 12;
+    const int count = fullTest() ? 300 : 6;
     const double ratio = 0.0005;
     int checked = 0;
     int wrongWithout = 0;
@@ -304,6 +304,7 @@ TEST_F(DeformedLevels, TilesFollowTheDeformedDistanceAndTheWishedDetail)
 {
     for (const char* name : {"oahu", "oahu_projected"})
     {
+        if (!fullTest() && name != std::string("oahu")) continue;
         SCOPED_TRACE(name);
         const Tiles even = settledTiles(context(), name, 1.0, 1.0);
         const Tiles fineZone = settledTiles(context(), name, 4.0, 1.0);

@@ -206,7 +206,7 @@ TEST_F(EngineCulling, AProxyLosesNothingAndKeepsLittleElse)
     const osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;
     mappings->addMapping(makePaint());
     _closeUps->addCloseUp(makeCloseUp({-300.0, 200.0}));
-    const int count = fullTest() ? 200 : 20;
+    const int count = fullTest() ? 200 : 10;
     int all = 0, allNeeded = 0;
     for (const std::vector<Effect*>& effects :
          {std::vector<Effect*>{high}, std::vector<Effect*>{bend}, std::vector<Effect*>{pedestrian},

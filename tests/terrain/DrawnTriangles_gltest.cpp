@@ -366,7 +366,7 @@ TEST_F(DrawnTriangles, OfAFlightDoNotPop)
     buildDatabase(built);
     const Loaded loaded(built.output);
     ASSERT_TRUE(loaded.renderer);
-    const int steps = fullTest() ? 200 : 40;
+    const int steps = fullTest() ? 200 : 20;
     // As an airliner flies from frame to frame: what moves hardly changes the picture, and what pops would.
     constexpr double step = 2.0;
     std::vector<std::vector<double>> changes;

@@ -132,8 +132,8 @@ double difference(const osg::Image& a, const osg::Image& b)
 TEST_F(GlobeFlight, IsCalmAndWhole)
 {
     if (!load()) return;
-    // Each tenth step in a short test, beside the one before it.
-    const int stride = fullTest() ? 1 : 10;
+    // Each twentieth step in a short test, beside the one before it.
+    const int stride = fullTest() ? 1 : 20;
     std::vector<double> changes;
     std::vector<int> steps;
     osg::ref_ptr<osg::Image> former;

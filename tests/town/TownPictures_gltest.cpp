@@ -125,7 +125,7 @@ protected:
 TEST_F(TownPictures, WithCullingAreThoseWithout)
 {
     const std::string path = database(600, 1.0);
-    const int count = fullTest() ? 800 : 36;
+    const int count = fullTest() ? 800 : 18;
     std::unique_ptr<CullHarness> harness;
     int town = 0, deformed = 0, left = 0;
     for (int i = 0; i < count; ++i)

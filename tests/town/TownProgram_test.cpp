@@ -71,7 +71,7 @@ TEST(TownProgram, MemoryDoesNotGrowWithTheTown)
     const std::string dem = writeRelief(folder / "dem.tif", 400, 300, 10.0, 47.0, 0.001);
     const std::string output = (folder / "database").string();
     ASSERT_EQ(build({"--dem", dem, "--tile-size", "32", "-o", output, "--quiet"}).exitCode, 0);
-    const int most = fullTest() ? 1000000 : 16000;
+    const int most = fullTest() ? 1000000 : 8000;
     const int across = static_cast<int>(std::sqrt(most)), rows = most / across + 1;
     std::vector<double> peaks;
     for (const int count : {most / 4, most})
