@@ -62,6 +62,9 @@ public:
     {
         const osg::Vec2d size = relief.size();
         _cellSize = std::min(size.x() / relief.columns, size.y() / relief.rows);
+        _cells.reserve(relief.heights.size());
+        for (std::size_t i = 0; i < relief.heights.size(); ++i)
+            _cells.push_back({relief.heights[i], worth.inside[i], worth.worth[i], relief.water[i] != 0});
     }
 
     /// Whether most of the picture's rectangle has ground; for a first choice among many views.
@@ -246,6 +249,13 @@ public:
     }
 
 private:
+    /// What counts of a cell of the relief, together, since a walk goes from cell to cell at random.
+    struct Cell
+    {
+        float height, inside, worth;
+        bool water;
+    };
+
     std::vector<double> dipsOf(const PictureCurve& curve) const
     {
         std::vector<double> result;
@@ -264,18 +274,17 @@ private:
         const int row = static_cast<int>(std::min(std::max(0.0, y), _relief.rows - 1.0));
         const std::size_t cell = _relief.index(column, row);
         const bool outside = x < 0.0 || y < 0.0 || x >= _relief.columns || y >= _relief.rows;
-        const double away = static_cast<double>(_worth.inside[cell]);
+        const Cell& there = _cells[cell];
+        const double away = static_cast<double>(there.inside);
         Sample sample;
-        if (std::isnan(_relief.heights[cell])) return sample;
-        sample.height = static_cast<double>(_relief.heights[cell]);
-        sample.water = _relief.water[cell] != 0;
+        if (std::isnan(there.height)) return sample;
+        sample.height = static_cast<double>(there.height);
+        sample.water = there.water;
         // Beyond a border of sea there is more of it.
-        sample.ground = away >= margin && (!outside || (sample.water && isSeaBorder(cell)));
-        sample.worth = outside ? 0.0 : static_cast<double>(_worth.worth[cell]);
+        sample.ground = away >= margin && (!outside || (sample.water && away > _cellSize));
+        sample.worth = outside ? 0.0 : static_cast<double>(there.worth);
         return sample;
     }
-
-    bool isSeaBorder(std::size_t cell) const { return static_cast<double>(_worth.inside[cell]) > _cellSize; }
 
     /// 1 if a summit is in sight and not at the picture's sides; 0 if it is not.
     double seenShare(const ReliefSummit& summit, const osg::Vec2d& at, const PictureCurve& curve,
@@ -301,6 +310,7 @@ private:
     int _columns, _steps;
     double _columnsPerUnit, _rowsPerUnit; ///< of the relief's cells
     double _cellSize;                     ///< the shorter side, metres
+    std::vector<Cell> _cells;
 };
 
 const char* directionOf(double heading)
