@@ -342,10 +342,11 @@ void printMakefile(const Options& options)
             text.insert(at, "$");
         return text;
     };
-    std::printf("# The work planned in %s; run: make -j N -f THIS-FILE\n"
-                "# A part that is killed is done again by the next make. Parts that are done take a moment.\n"
-                ".PHONY: all\nall:\n",
-                options.folder.c_str());
+    // All of it or nothing, since a file may be made of it.
+    std::ostringstream text;
+    text << "# The work planned in " << options.folder << "; run: make -j N -f THIS-FILE\n"
+         << "# A part that is killed is done again by the next make. Parts that are done take a moment.\n"
+            ".PHONY: all\nall:\n";
     std::string before;
     for (const JobArray& array : arraysOf(options, work))
     {
@@ -355,13 +356,15 @@ void printMakefile(const Options& options)
         {
             const std::string target = name + "." + std::to_string(part);
             parts += " " + target;
-            std::printf(".PHONY: %s\n%s: %s\n\t%s\n", target.c_str(), target.c_str(), before.c_str(),
-                        escaped(workerLine(options, work, array, std::to_string(part))).c_str());
+            text << ".PHONY: " << target << "\n"
+                 << target << ": " << before << "\n\t"
+                 << escaped(workerLine(options, work, array, std::to_string(part))) << "\n";
         }
-        std::printf(".PHONY: %s\n%s:%s\n", name.c_str(), name.c_str(), parts.c_str());
+        text << ".PHONY: " << name << "\n" << name << ":" << parts << "\n";
         before = name;
     }
-    std::printf("all: %s\n", before.c_str());
+    text << "all: " << before << "\n";
+    std::fputs(text.str().c_str(), stdout);
 }
 
 /// Tells how long the whole work would take.

@@ -127,11 +127,10 @@ protected:
             .write(file("small.tif"));
     }
 
-    /// The options of a program in --help, but those that end it or that it cannot do without.
-    std::set<std::string> optionsOf(const std::string& program, const std::set<std::string>& others,
-                                    Exclusions& exclusions)
+    /// The options that a help text lists, but those that end the program or that it cannot do without.
+    static std::set<std::string> optionsIn(const std::string& help, const std::set<std::string>& others,
+                                           Exclusions& exclusions)
     {
-        const std::string help = run(program, {"--help"}).standardOutput;
         std::set<std::string> options;
         std::istringstream stream(help);
         for (std::string line; std::getline(stream, line);)
@@ -172,21 +171,20 @@ protected:
                                      std::any_of(excluded->second.begin(), excluded->second.end(), has));
             if (!isReplaced) all.insert(all.end(), each.words.begin(), each.words.end());
         }
-        const bool isPicture = program != "osggeofx_build";
-        if (isPicture)
+        if (makesPictures(program))
         {
             all.push_back("-o");
             all.push_back(std::string(has("--plan") ? "" : "out/") + (has("--path") ? "p%04d.png" : "p.png"));
         }
         all.insert(all.end(), words.begin(), words.end());
-        const ProgramResult result = run(program, all);
+        const ProgramResult result = program == viewer ? runViewer(all) : run(program, all);
         Trial done;
         done.exitCode = result.exitCode;
         done.text = result.standardOutput + result.standardError;
         std::istringstream stream(done.text);
         for (std::string line; std::getline(stream, line);)
             done.lines.insert(withoutNumbers(line));
-        if (!isPicture) done.files = contents(file("out"));
+        if (program == "osggeofx_build") done.files = contents(file("out"));
         std::set<std::string> pictures;
         for (const auto& each : fs::directory_iterator(file("out")))
             if (each.path().extension() == ".png") pictures.insert(each.path().string());
@@ -198,7 +196,10 @@ protected:
                   const std::vector<Sample>& samples, const std::set<std::string>& others, int sampleSize)
     {
         Exclusions exclusions;
-        const std::set<std::string> options = optionsOf(program, others, exclusions);
+        // A program of several commands has a help text for each.
+        const Words help = program == "osggeofx_cluster" ? Words{sources.front(), "--help"} : Words{"--help"};
+        const std::set<std::string> options =
+            optionsIn(run(program, help).standardOutput, others, exclusions);
         std::set<std::string> tried;
         for (const Sample& each : samples)
             tried.insert(each.option);
@@ -230,7 +231,34 @@ protected:
         }
     }
 
+    static constexpr const char* viewer = "osggeofx_viewer";
+
 private:
+    static bool makesPictures(const std::string& program)
+    {
+        return program == "osggeofx_render" || program == "osggeofx_panorama" ||
+               program == "osggeofx_palette";
+    }
+
+    /// Some frames in a window, on a display of its own.
+    ProgramResult runViewer(Words arguments) const
+    {
+        const Words begin = {"sh", "-c",
+                             R"(rm -f display; mkfifo display
+Xvfb -displayfd 1 -screen 0 320x240x24 >display 2>/dev/null & server=$!
+read -r number <display
+DISPLAY=:$number "$@"; code=$?
+kill $server; wait $server
+exit $code)",
+                             "sh", builtProgram(viewer)};
+        arguments.insert(arguments.begin(), begin.begin(), begin.end());
+        ProgramOptions options;
+        options.folder = std::filesystem::path(file("")).string();
+        options.environment = {"LIBGL_ALWAYS_SOFTWARE=1", "OSG_NOTIFY_LEVEL=WARN", "OSG_WINDOW=0 0 160 120",
+                               "OSG_RUN_FRAME_COUNT=4"};
+        return runProgram(arguments, options);
+    }
+
     static bool areExcluded(const Words& first, const Words& second, Exclusions& exclusions)
     {
         for (const std::string& each : first)
@@ -317,6 +345,8 @@ private:
         ASSERT_TRUE(haveOneForm(*none.picture, *both.picture));
         // Names and lines leave the picture for the SVG file, and lines become a layer of their own.
         if (has("--svg") || (has("--lines") && has("--layers"))) return;
+        // What a light map takes out of colors changes what samples make of them.
+        if (has("--light")) return;
         const bool movesGround = has("--liberties") || has("--liberty") || has("--vertical");
         expectNoOtherPixels(*both.picture, *none.picture, *a.picture, *b.picture, movesGround);
     }
@@ -499,4 +529,79 @@ TEST_F(OptionPairs, OfBuild)
     };
     tryPairs("osggeofx_build", {"--dem", "small.tif"}, {{"--output", {"-o", "out/db"}}}, samples,
              {"--help", "--dem", "--output", "--work", "--unit"}, 3);
+}
+
+TEST_F(OptionPairs, OfPalette)
+{
+    write("points.csv", "class,x,y,light\nfield,100,200,0.2\nfield,140,210,0.8\nsnow,240,120,0.3\n"
+                        "snow,250,125,0.9\n");
+    const Words light = {"--light", "plain.png"};
+    const std::vector<Sample> samples = {
+        {"--light", light},
+        {"--hillshade", {"--light", "plain.png", "--hillshade"}},
+        {"--classes", {"--light", "plain.png", "--classes", "plain.png"}},
+        {"--points", {"--points", "points.csv"}},
+        {"--around", {"--points", "points.csv", "--around", "4"}},
+    };
+    // A ready palette has no painting.
+    tryPairs("osggeofx_palette", {"plain.png"}, {{"--points", {"--points", "points.csv"}}}, samples,
+             {"--help", "--output", "--ready"}, 2);
+}
+
+TEST_F(OptionPairs, OfCluster)
+{
+    const ProgramResult planned = run("osggeofx_build", {"--dem", "small.tif", "--plan", "plan"});
+    ASSERT_EQ(planned.exitCode, 0) << planned.standardError;
+    std::smatch stage;
+    const std::string plan = bytes("plan/work/plan.json");
+    ASSERT_TRUE(std::regex_search(plan, stage, std::regex(R"x("name": *"([a-z]+)")x"))) << plan;
+    const std::vector<Sample> both = {
+        {"--max-workers", {"--max-workers", "2"}},
+        {"--memory", {"--memory", "256"}},
+        {"--builder", {"--builder", "/usr/bin/osggeofx_build"}},
+        {"--units-per-job", {"--units-per-job", "2"}},
+        {"--until", {"--until", stage[1]}},
+    };
+    // A makefile comes whole or not at all.
+    const ProgramResult refused = run("osggeofx_cluster", {"make", "plan", "--until", "nothing"});
+    EXPECT_EQ(refused.exitCode, 2);
+    EXPECT_EQ(refused.standardOutput, "");
+    tryPairs("osggeofx_cluster", {"make", "plan"}, {}, both, {"--help"}, 3);
+    std::vector<Sample> submitted = both;
+    submitted.push_back({"--partition", {"--partition", "fast"}});
+    tryPairs("osggeofx_cluster", {"submit", "plan", "--dry-run"}, {}, submitted, {"--help", "--dry-run"}, 3);
+}
+
+TEST_F(OptionPairs, OfViewer)
+{
+    write("city.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    write("saved.path", "0 -4919000 507000 -4025000 0 0 0 1\n1 -4919000 507100 -4025000 0 0 0 1\n");
+    const std::vector<Sample> samples = {
+        {"--fov", {"--fov", "40"}},
+        {"--effect", {"--effect", "verticalExaggeration factor=2"}},
+        {"--city", {"--city", "city.obj"}},
+        {"--mapping", {"--mapping", "area.geojson"}},
+        {"--cache-mappings", {"--mapping", "area.geojson", "--cache-mappings"}},
+        {"--sequence", {"--sequence", "rain.tif"}},
+        {"--route", {"--route", "route.geojson"}},
+        {"--route-width", {"--route", "route.geojson", "--route-width", "400"}},
+        {"--mapping-style", {"--mapping", "area.geojson", "--mapping-style", "area.style.sld"}},
+        {"--colors", {"--sequence", "rain.tif", "--colors", "ramp.txt"}},
+        {"--stretch", {"--mapping", "colors.tif", "--stretch", "20,120"}},
+        {"--labels", {"--labels", "names.geojson"}},
+        {"--lines", {"--lines", "lines.geojson"}},
+        {"--style", {"--labels", "names.geojson", "--style", "style.json"}},
+        {"--font", {"--labels", "names.geojson", "--font", "DejaVu Sans"}},
+        {"--sky", {"--sky"}},
+        {"--allow-outside", {"--allow-outside"}},
+        {"--memory", {"--memory", "500"}},
+        {"--gpu-memory", {"--gpu-memory", "500"}},
+        {"--prefetch", {"--prefetch", "3"}},
+    };
+    // OSG's own options are not the kit's, nor is --speed, which osgviewer has, too.
+    Exclusions none;
+    std::set<std::string> others =
+        optionsIn(runProgram({"osgviewer", "--help"}, {}).standardOutput, {}, none);
+    others.insert({"--help", "--help-effects"});
+    tryPairs(viewer, {"work/ground/terrain.osgb"}, {}, samples, others, 1);
 }
