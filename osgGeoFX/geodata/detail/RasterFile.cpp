@@ -14,6 +14,7 @@
 
 #include <cpl_string.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <vector>
 
@@ -81,11 +82,11 @@ DatasetChain openPart(const std::string& file, const std::string& variable, cons
     return chain;
 }
 
-/// The time of a band of netCDF, for people; empty if it has none.
-std::string timeOf(GDALDataset& raster, GDALRasterBand& band)
+/// The time of a band of netCDF, for people; empty if it has none. `dimension` counts the times.
+std::string timeOf(GDALDataset& raster, GDALRasterBand& band, const std::string& dimension)
 {
-    const char* const number = band.GetMetadataItem("NETCDF_DIM_time");
-    const char* const unit = raster.GetMetadataItem("time#units");
+    const char* const number = band.GetMetadataItem(("NETCDF_DIM_" + dimension).c_str());
+    const char* const unit = raster.GetMetadataItem((dimension + "#units").c_str());
     const std::optional<TimeUnit> known = number && unit ? TimeUnit::parse(unit) : std::nullopt;
     if (!known || !known->dated) return number ? number : "";
     const osg::ref_ptr<LayerClock> clock = new LayerClock;
@@ -104,10 +105,13 @@ void takeFirst(DatasetChain& chain, const std::string& name)
     if (const char* const dimensions = raster.GetMetadataItem("NETCDF_DIM_EXTRA"))
     {
         const std::string which = dimensions;
-        const bool timed = which.find("time") != std::string::npos;
-        const std::string time = timeOf(raster, band);
-        if (which == "{time}" || which == "time")
-            remarkOnce(file + " times the first, " + time + ", is taken; --sequence shows them all.");
+        const CPLStringList names(CSLTokenizeString2(dimensions, "{},", 0));
+        const auto* const time = std::find_if(names.List(), names.List() + names.size(),
+                                              [](const char* each) { return isTimeDimension(each); });
+        const bool timed = time != names.List() + names.size();
+        if (timed && names.size() == 1)
+            remarkOnce(file + " times the first, " + timeOf(raster, band, *time) +
+                       ", is taken; --sequence shows them all.");
         else
             remarkOnce(file + " bands by " + which + " the first is taken; name others as " + name +
                        ":VARIABLE[DIMENSION=VALUE]" + (timed ? "; --sequence shows all times." : "."));

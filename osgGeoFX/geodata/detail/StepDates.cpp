@@ -98,6 +98,12 @@ double TimeUnit::timeOf(double count) const
     return from + (count * months - whole) * (monthsLater(start, whole + 1.0) - from);
 }
 
+bool isTimeDimension(const std::string& name)
+{
+    const std::string lower = osgDB::convertToLowerCase(name);
+    return lower == "time" || lower == "valid_time";
+}
+
 std::optional<double> dateIn(const std::string& text)
 {
     // Year, month and day with one mark between them, then perhaps a time of day; no further digit follows.

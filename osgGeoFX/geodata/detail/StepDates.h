@@ -22,6 +22,9 @@ struct TimeUnit
     double timeOf(double count) const;
 };
 
+/// Whether a dimension of this name counts times, as the models of weather and of the sea write it, in any case.
+bool isTimeDimension(const std::string& name);
+
 /** The date in a file's name or in a band's description, seconds since 1970; nothing if there is none.
 
     A date is eight digits, year, month and day, alone or with the same mark between them. A time of day may follow: hour and

@@ -351,8 +351,7 @@ private:
 
     static bool isTime(const GDALDimension& dimension)
     {
-        const std::string name = lower(dimension.GetName());
-        return dimension.GetType() == GDAL_DIM_TYPE_TEMPORAL || name == "time" || name == "valid_time";
+        return dimension.GetType() == GDAL_DIM_TYPE_TEMPORAL || isTimeDimension(dimension.GetName());
     }
 
     /// Whether a variable has an x and a y, and, if it needs one, a time beside them.
