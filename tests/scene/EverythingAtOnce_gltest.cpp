@@ -183,9 +183,10 @@ protected:
 std::vector<std::tuple<std::string, int>> cases()
 {
     std::vector<std::tuple<std::string, int>> result;
-    for (int part = 0; part < (fullTest() ? PARTS : 2); ++part)
-        result.emplace_back("oahu", part);
+    // The programs of one part take most of its time.
     for (int part = 0; part < (fullTest() ? PARTS : 1); ++part)
+        result.emplace_back("oahu", part);
+    for (int part = 0; part < (fullTest() ? PARTS : 0); ++part)
         result.emplace_back("oahu_projected", part);
     return result;
 }
