@@ -134,7 +134,8 @@ public:
             throw BuildError(_file + ": step " + std::to_string(index) + " of its variable " + variable +
                              " cannot be used (" + errors.message() + "); check it with gdalmdiminfo.");
         double place[6];
-        if (chain.file().GetGeoTransform(place) != CE_None && !_array->GetCoordinateVariables().empty())
+        if (chain.file().GetGeoTransform(place) != CE_None && !bringAround(chain) &&
+            !_array->GetCoordinateVariables().empty())
             return curved(index);
         const OGRSpatialReference* srs = chain.file().GetSpatialRef();
         const std::string degrees = lower(dimensions[_axes.x]->GetIndexingVariable()
@@ -172,6 +173,40 @@ private:
                              "gdalwarp -geoloc, and name the result.");
         addVirtualRaster(chain, {"-b", std::to_string(band + 1)}, _file);
         return chain;
+    }
+
+    static bool isEven(const std::vector<double>& values)
+    {
+        if (values.size() < 2) return false;
+        const double step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (!(std::abs(values[i] - values.front() - static_cast<double>(i) * step) <
+                  0.01 * std::abs(step)))
+                return false;
+        return true;
+    }
+
+    /// Longitudes may go on at 0 behind 360, or at −180 behind 180, where GDAL sees no even grid. Whether the raster has its place now.
+    bool bringAround(DatasetChain& chain) const
+    {
+        const auto numbers = _array->GetDimensions()[_axes.x]->GetIndexingVariable();
+        if (!numbers || lower(numbers->GetUnit()).compare(0, 6, "degree") != 0) return false;
+        std::vector<double> x = numbersOf(_axes.x), y = numbersOf(_axes.y);
+        for (std::size_t i = 1; i < x.size(); ++i)
+            x[i] = x[i - 1] + std::remainder(x[i] - x[i - 1], 360.0);
+        if (!isEven(x) || !isEven(y)) return false;
+        // East of 180 degrees the grid lies in the west.
+        const double turn = x.front() > 180.0 ? -360.0 : 0.0;
+        const double wide = 0.5 * (x[1] - x[0]), high = 0.5 * (y[1] - y[0]);
+        const auto number = [](double value)
+        {
+            return std::string(CPLSPrintf("%.17g", value));
+        };
+        addVirtualRaster(chain,
+                         {"-a_ullr", number(x.front() + turn - wide), number(y.front() - high),
+                          number(x.back() + turn + wide), number(y.back() + high)},
+                         _file);
+        return true;
     }
 
     /// Axes may be in another unit than the coordinate system, such as kilometres.
