@@ -108,7 +108,7 @@ TEST_F(BuilderInput, ThingsThatAreNoRasters)
 {
     expectDemRefusal(_folder.write("notes.txt", "These are notes.\n"), {"not a raster", "gdalinfo"});
     expectDemRefusal(_folder.write("points.geojson", R"({"type":"FeatureCollection","features":[]})"),
-                     {"not a raster"});
+                     {"vector data and no raster", "gdal_rasterize"});
     fs::create_directory(_folder / "folder");
     expectDemRefusal(_folder / "folder", {"not a raster"});
     expectDemRefusal(_folder.write("noise.tif", std::string("II*\0\xff\xff\xff\xff", 8)), {"not a raster"});

@@ -293,6 +293,9 @@ DatasetPtr openVectors(const std::string& file)
                                          vectorOptions(format).List()));
     if (dataset && format == "CSV") placeCsv(*dataset, file);
     if (dataset && format == "GPX") checkCommas(file);
+    if (!dataset && !driver && GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER, nullptr, nullptr))
+        throw BuildError(file +
+                         ": it is a raster and has no vector data; make areas of it with gdal_polygonize.");
     if (!dataset) throw BuildError(refusalOf(file, "vector data", errors.message(), remedyFor(file)) + ".");
     return dataset;
 }

@@ -182,6 +182,10 @@ DatasetPtr RasterFile::openPlain(const std::string& name, const char* const* opt
 {
     const GdalErrorScope errors;
     DatasetPtr dataset = opened(name, options);
+    if (!dataset && errors.message().find("not recognized") != std::string::npos &&
+        GDALIdentifyDriverEx(name.c_str(), GDAL_OF_VECTOR, nullptr, nullptr))
+        throw BuildError(name +
+                         ": it has vector data and no raster; make a raster of it with gdal_rasterize.");
     if (!dataset)
         throw BuildError(refusalOf(name, "a raster", errors.message(),
                                    "check it with gdalinfo, or convert it to GeoTIFF") +
