@@ -37,6 +37,12 @@ std::string lower(std::string text)
     return text;
 }
 
+/// All digits of a number, as GDAL's options have it.
+std::string number(double value)
+{
+    return CPLSPrintf("%.17g", value);
+}
+
 /// Times must rise; those that do not are as good as none.
 void checkTimes(TimeSteps& steps, const std::string& file)
 {
@@ -198,10 +204,6 @@ private:
         // East of 180 degrees the grid lies in the west.
         const double turn = x.front() > 180.0 ? -360.0 : 0.0;
         const double wide = 0.5 * (x[1] - x[0]), high = 0.5 * (y[1] - y[0]);
-        const auto number = [](double value)
-        {
-            return std::string(CPLSPrintf("%.17g", value));
-        };
         addVirtualRaster(chain,
                          {"-a_ullr", number(x.front() + turn - wide), number(y.front() - high),
                           number(x.back() + turn + wide), number(y.back() + high)},
@@ -223,10 +225,6 @@ private:
         };
         const double wide = factor(_axes.x), high = factor(_axes.y);
         if (std::abs(wide - 1.0) < 1e-6 && std::abs(high - 1.0) < 1e-6) return;
-        const auto number = [](double value)
-        {
-            return std::string(CPLSPrintf("%.17g", value));
-        };
         const double right = place[0] + place[1] * chain.top().GetRasterXSize();
         const double bottom = place[3] + place[5] * chain.top().GetRasterYSize();
         addVirtualRaster(chain,
