@@ -11,6 +11,7 @@
 #include <tools/ImageComparison.h>
 #include <tools/OahuScene.h>
 #include <tools/PagedScene.h>
+#include <tools/SampledCases.h>
 #include <tools/TempDir.h>
 
 #include <osg/Math>
@@ -199,8 +200,8 @@ TEST_P(CloseUpCulling, ChangesNoBit)
 }
 
 INSTANTIATE_TEST_SUITE_P(Terrain, CloseUpCulling,
-                         ::testing::Combine(::testing::Values(std::string("oahu"), "oahu_projected", "flat",
-                                                              "globe"),
+                         ::testing::Combine(::testing::ValuesIn(sampledCases<std::string>(
+                                                {"oahu", "oahu_projected", "flat", "globe"}, 2, 1)),
                                             ::testing::Range(0, PARTS)),
                          [](const auto& each)
                          { return std::get<0>(each.param) + "_" + std::to_string(std::get<1>(each.param)); });

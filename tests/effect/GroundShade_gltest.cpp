@@ -11,6 +11,7 @@
 #include <osgGeoFX/scene/DeformedIntersector.h>
 #include <tools/BentGround.h>
 #include <tools/DepthKinds.h>
+#include <tools/SampledCases.h>
 
 #include <osg/LightSource>
 
@@ -187,7 +188,8 @@ TEST_P(GroundShadeDepths, AreAllTheSame)
     EXPECT_GT(differing(*alone, *with), 500);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, GroundShadeDepths, ::testing::ValuesIn(DepthKind::all()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Kinds, GroundShadeDepths, ::testing::ValuesIn(sampledCases(DepthKind::all(), 2)),
+                         nameOf);
 
 TEST_F(GroundShadeTest, OverlapsInAnyOrder)
 {

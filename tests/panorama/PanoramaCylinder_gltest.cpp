@@ -11,6 +11,7 @@
 #include <tools/PanoramaHills.h>
 #include <tools/PictureTiles.h>
 #include <tools/RandomSamples.h>
+#include <tools/SampledCases.h>
 
 #include <osgDB/WriteFile>
 
@@ -220,5 +221,5 @@ TEST_P(PanoramaCylinder, WhatTheHandHoldsStaysUnderIt)
     EXPECT_LT((hand->getCenter() - _hills.middle()).length(), 1.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ground, PanoramaCylinder, ::testing::Bool(),
+INSTANTIATE_TEST_SUITE_P(Ground, PanoramaCylinder, ::testing::ValuesIn(sampledCases<bool>({false, true}, 2)),
                          [](const auto& one) { return std::string(one.param ? "globe" : "projected"); });

@@ -9,6 +9,7 @@
 #include <tools/PanoramaHills.h>
 #include <tools/PictureTiles.h>
 #include <tools/RandomSamples.h>
+#include <tools/SampledCases.h>
 #include <tools/TempDir.h>
 #include <tools/ThreadedViews.h>
 
@@ -327,9 +328,11 @@ TEST_F(PanoramaStates, TilesAreThePictureInParts)
         bool strokes, water, projection;
         double most;
     };
-    for (const Painting& painting :
-         {Painting{"plain", false, false, true, 0.0005}, Painting{"water", false, true, true, 0.0005},
-          Painting{"strokes", true, true, true, 0.002}, Painting{"perspective", true, true, false, 0.002}})
+    for (const Painting& painting : sampledCases<Painting>({{"plain", false, false, true, 0.0005},
+                                                            {"water", false, true, true, 0.0005},
+                                                            {"strokes", true, true, true, 0.002},
+                                                            {"perspective", true, true, false, 0.002}},
+                                                           2, 1))
     {
         SCOPED_TRACE(painting.name);
         _map->setStrokes(painting.strokes);

@@ -8,6 +8,7 @@
 #include <tools/PanoramaHills.h>
 #include <tools/RandomSamples.h>
 #include <tools/RandomViews.h>
+#include <tools/SampledCases.h>
 
 #include <osg/Material>
 #include <osgDB/WriteFile>
@@ -179,5 +180,6 @@ TEST_P(PanoramaStrength, WithoutPointsAndWithOneExaggerationThePictureIsAsEver)
     EXPECT_TRUE(imagesMatch(*draw(1.0), *before));
 }
 
-INSTANTIATE_TEST_SUITE_P(Ground, PanoramaStrength, ::testing::Bool(),
+INSTANTIATE_TEST_SUITE_P(Ground, PanoramaStrength,
+                         ::testing::ValuesIn(sampledCases<bool>({false, true}, 2, 1)),
                          [](const auto& one) { return std::string(one.param ? "globe" : "projected"); });

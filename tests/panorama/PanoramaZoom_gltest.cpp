@@ -5,6 +5,7 @@
 // and the brush's sizes come and go meanwhile, and must not pop.
 #include <tools/GlRequired.h>
 #include <tools/OahuScene.h>
+#include <tools/SampledCases.h>
 
 #include <gtest/gtest.h>
 #include <osg/Math>
@@ -95,5 +96,5 @@ TEST_P(PanoramaZoom, NoStepChangesThePictureMuchMoreThanTheOthers)
     EXPECT_LE(*most, 2.0 * median);
 }
 
-INSTANTIATE_TEST_SUITE_P(Oahu, PanoramaZoom, ::testing::Bool(),
+INSTANTIATE_TEST_SUITE_P(Oahu, PanoramaZoom, ::testing::ValuesIn(sampledCases<bool>({false, true}, 2, 1)),
                          [](const auto& each) { return std::string(each.param ? "strokes" : "plain"); });

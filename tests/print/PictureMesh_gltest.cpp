@@ -10,6 +10,7 @@
 #include <tools/GlFixture.h>
 #include <tools/OahuScene.h>
 #include <tools/PanoramaHills.h>
+#include <tools/SampledCases.h>
 #include <tools/TempDir.h>
 
 #include <osg/Material>
@@ -254,5 +255,5 @@ TEST_F(PictureMeshTest, HasTheTilesOfADatabase)
     EXPECT_GT(textures, 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ground, MeshOfGround, ::testing::Values(false, true),
+INSTANTIATE_TEST_SUITE_P(Ground, MeshOfGround, ::testing::ValuesIn(sampledCases<bool>({false, true}, 2)),
                          [](const auto& each) { return each.param ? "Globe" : "Plane"; });

@@ -14,6 +14,7 @@
 #include <tools/OahuScene.h>
 #include <tools/PanoramaHills.h>
 #include <tools/RandomSamples.h>
+#include <tools/SampledCases.h>
 
 #include <osg/Material>
 #include <osg/Math>
@@ -392,5 +393,5 @@ TEST_F(PlacePictureTest, OfAPictureInParts)
     EXPECT_GE(found.ground + found.sky, found.asked - found.asked / 10);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ground, PlacesOnGround, ::testing::Values(false, true),
+INSTANTIATE_TEST_SUITE_P(Ground, PlacesOnGround, ::testing::ValuesIn(sampledCases<bool>({false, true}, 2, 1)),
                          [](const auto& each) { return each.param ? "Globe" : "Plane"; });

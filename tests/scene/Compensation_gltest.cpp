@@ -149,11 +149,11 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
 INSTANTIATE_TEST_SUITE_P(
     Oahu, Compensation,
     ::testing::Combine(
-        ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 8, 500},
-                          OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 4, 500},
+        ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 5, 500},
+                          OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 3, 500},
                           OahuCase{"liberties", "oahu", addRandomLiberties, 6, 200},
                           OahuCase{"liberties_projected", "oahu_projected", addRandomLiberties, 6, 200},
-                          OahuCase{"panorama", "oahu", addRandomPanorama, 6, 100},
+                          OahuCase{"panorama", "oahu", addRandomPanorama, 4, 100},
                           OahuCase{"panorama_projected", "oahu_projected", addRandomPanorama, 4, 100},
                           OahuCase{"painting", "oahu", addRandomPainting, 2, 40},
                           OahuCase{"painting_projected", "oahu_projected", addRandomPainting, 2, 40}),

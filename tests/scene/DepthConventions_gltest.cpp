@@ -14,6 +14,7 @@
 #include <tools/FrameBufferTarget.h>
 #include <tools/ImageComparison.h>
 #include <tools/PanoramaHills.h>
+#include <tools/SampledCases.h>
 
 #include <osg/MatrixTransform>
 
@@ -302,7 +303,7 @@ TEST_P(BentDepths, ACameraMayHaveDepthsOfItsOwn)
     EXPECT_GT(apart(*render(_root), *standard), 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, BentDepths, ::testing::ValuesIn(DepthKind::all()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Kinds, BentDepths, ::testing::ValuesIn(sampledCases(DepthKind::all(), 2)), nameOf);
 
 TEST_P(CloseUpDepths, OfLayersAndFencesAreTheStandardPictures)
 {
@@ -417,7 +418,8 @@ TEST_F(LayerDepths, ReversedDepthsAreAsPreciseInLayersAsInTheFrameBuffer)
     EXPECT_LE(count, 5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, CloseUpDepths, ::testing::ValuesIn(DepthKind::all()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Kinds, CloseUpDepths, ::testing::ValuesIn(sampledCases(DepthKind::all(), 2, 1)),
+                         nameOf);
 
 TEST_P(PanoramaDepths, OfAMapWithStrokesAreTheStandardPictures)
 {
@@ -446,4 +448,5 @@ TEST_P(PanoramaDepths, OfAMapWithStrokesAreTheStandardPictures)
     EXPECT_LE(apart(*draw(), *standard), 10);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, PanoramaDepths, ::testing::ValuesIn(DepthKind::all()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Kinds, PanoramaDepths, ::testing::ValuesIn(sampledCases(DepthKind::all(), 2)),
+                         nameOf);

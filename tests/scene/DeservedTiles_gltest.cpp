@@ -7,6 +7,7 @@
 #include <tools/CullHarness.h>
 #include <tools/GlFixture.h>
 #include <tools/OahuScene.h>
+#include <tools/SampledCases.h>
 
 #include <osg/Geometry>
 #include <osg/PagedLOD>
@@ -297,5 +298,6 @@ TEST_P(DeservedTiles, NoTileIsMissingAndNoneIsCoarserThanItsErrorAllows)
     EXPECT_LT(idle, asking / 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Oahu, DeservedTiles, ::testing::Values("oahu", "oahu_projected"),
+INSTANTIATE_TEST_SUITE_P(Oahu, DeservedTiles,
+                         ::testing::ValuesIn(sampledCases<const char*>({"oahu", "oahu_projected"}, 2, 1)),
                          [](const auto& each) { return std::string(each.param); });

@@ -13,6 +13,7 @@
 #include <tools/CloseUpStage.h>
 #include <tools/ImageComparison.h>
 #include <tools/PanoramaHills.h>
+#include <tools/SampledCases.h>
 #include <tools/StrokeTiles.h>
 
 #include <osg/MatrixTransform>
@@ -364,7 +365,8 @@ TEST_F(EffectPairs, AnExaggerationUnderABend)
     osg::ref_ptr<BlendedView> blend = new BlendedView;
     blend->setBirdsEyeView(makeBirdsEye());
     blend->setPedestrianView(makePedestrian());
-    for (const osg::ref_ptr<Effect>& bend : Effects{makeBirdsEye(), makePedestrian(), blend})
+    for (const osg::ref_ptr<Effect>& bend :
+         sampledCases<osg::ref_ptr<Effect>>({makeBirdsEye(), makePedestrian(), blend}, 2))
     {
         SCOPED_TRACE(bend->className());
         const Picture expected = picture({bend}, high);
@@ -394,7 +396,8 @@ TEST_F(EffectPairs, MappingsOnExaggeratedGround)
 
 TEST_F(EffectPairs, MappingsOnBentGround)
 {
-    for (const osg::ref_ptr<Effect>& bend : Effects{makeBirdsEye(), makePedestrian()})
+    for (const osg::ref_ptr<Effect>& bend :
+         sampledCases<osg::ref_ptr<Effect>>({makeBirdsEye(), makePedestrian()}, 2, 1))
     {
         SCOPED_TRACE(bend->className());
         const Picture expected = picture({bend}, mapped());
@@ -448,7 +451,8 @@ TEST_F(EffectPairs, CloseUpsOfExaggeratedGroundKeepTheirOwnHeights)
 
 TEST_F(EffectPairs, CloseUpsOfBentGround)
 {
-    for (const osg::ref_ptr<Effect>& bend : Effects{makeBirdsEye(), makePedestrian()})
+    for (const osg::ref_ptr<Effect>& bend :
+         sampledCases<osg::ref_ptr<Effect>>({makeBirdsEye(), makePedestrian()}, 2))
     {
         SCOPED_TRACE(bend->className());
         const osg::ref_ptr<CloseUp> closeUp = makeRectangle({-150.0, 150.0}, 350.0);

@@ -5,6 +5,7 @@
 #include <bench/GlObjectCount.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <tools/CloseUpStage.h>
+#include <tools/SampledCases.h>
 
 #include <osg/Texture2D>
 
@@ -89,17 +90,21 @@ protected:
         bend->setTessellation(true);
         return bend;
     }
-    std::vector<std::pair<const char*, std::vector<osg::ref_ptr<Effect>>>> all()
+    using NamedEffects = std::pair<const char*, std::vector<osg::ref_ptr<Effect>>>;
+    /// All of nine; without --full each third one from `first`.
+    std::vector<NamedEffects> all(std::size_t first)
     {
-        return {{"no effect", {}},
-                {"bend", {new BirdsEyeView}},
-                {"bend with tessellation", {tessellated()}},
-                {"mappings", {makeMappings(0.0)}},
-                {"two sets of mappings", {makeMappings(-300.0), makeMappings(200.0)}},
-                {"close-ups", {_closeUps}},
-                {"panorama map", {_panorama}},
-                {"mappings in close-ups", {makeMappings(0.0), _closeUps, makeMappings(200.0)}},
-                {"mappings in a panorama map", {_panorama, makeMappings(0.0), makeMappings(200.0)}}};
+        const std::vector<NamedEffects> nine = {
+            {"no effect", {}},
+            {"bend", {new BirdsEyeView}},
+            {"bend with tessellation", {tessellated()}},
+            {"mappings", {makeMappings(0.0)}},
+            {"two sets of mappings", {makeMappings(-300.0), makeMappings(200.0)}},
+            {"close-ups", {_closeUps}},
+            {"panorama map", {_panorama}},
+            {"mappings in close-ups", {makeMappings(0.0), _closeUps, makeMappings(200.0)}},
+            {"mappings in a panorama map", {_panorama, makeMappings(0.0), makeMappings(200.0)}}};
+        return sampledCases(nine, 3, first);
     }
     void show(const std::vector<osg::ref_ptr<Effect>>& effects)
     {
@@ -142,7 +147,7 @@ protected:
 TEST_F(GlObjects, AllThatASceneHasGoesWhenItIsReleased)
 {
     const osg::ref_ptr<osg::Group> empty = new osg::Group;
-    for (const auto& [what, effects] : all())
+    for (const auto& [what, effects] : all(1))
     {
         for (const CloseUps::Pipeline pipeline : {CloseUps::SINGLE_PASS, CloseUps::MULTI_PASS})
         {
@@ -165,7 +170,7 @@ TEST_F(GlObjects, AnEffectThatIsElsewhereIsReleasedByItself)
 {
     drawSettled();
     const GlObjectCount plain = count();
-    for (const auto& [what, effects] : all())
+    for (const auto& [what, effects] : all(2))
     {
         SCOPED_TRACE(what);
         if (effects.empty() || effects[0]->asDeformation()) continue; // its program is the scene's
@@ -184,7 +189,7 @@ TEST_F(GlObjects, AnEffectThatIsElsewhereIsReleasedByItself)
 TEST_F(GlObjects, ContextsCloseAndOpen)
 {
     _closeUps->setPipeline(CloseUps::MULTI_PASS); // AUTOMATIC goes by the last frame
-    for (const auto& [what, effects] : all())
+    for (const auto& [what, effects] : all(0))
     {
         SCOPED_TRACE(what);
         show(effects);
@@ -258,7 +263,7 @@ TEST_F(GlObjects, EffectsThatAreElsewhereLetGoOfAContextThatCloses)
     const osg::ref_ptr<CloseUps> other = new CloseUps;
     other->setPipeline(CloseUps::MULTI_PASS);
     other->addCloseUp(makeCloseUp({0.0, 0.0}));
-    for (const auto& [what, effects] : all())
+    for (const auto& [what, effects] : all(1))
     {
         SCOPED_TRACE(what);
         show(effects);
@@ -290,7 +295,7 @@ TEST_F(GlObjects, ScenesHandOnWhatTheyAreTold)
     EXPECT_TRUE(told->released);
     // More contexts than there were: all draw on as they did.
     _closeUps->setPipeline(CloseUps::MULTI_PASS);
-    for (const auto& [what, effects] : all())
+    for (const auto& [what, effects] : all(2))
     {
         SCOPED_TRACE(what);
         show(effects);

@@ -340,7 +340,7 @@ TEST_P(Picking, WithoutEffectsItIsOsgsOwnIntersector)
 
 INSTANTIATE_TEST_SUITE_P(
     Oahu, Picking,
-    ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 5, 50},
+    ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 3, 50},
                       OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 2, 50},
                       OahuCase{"panorama", "oahu", addRandomPanorama, 2, 12},
                       OahuCase{"panorama_projected", "oahu_projected", addRandomPanorama, 3, 12}),

@@ -6,6 +6,7 @@
 #include <tools/CullHarness.h>
 #include <tools/GlFixture.h>
 #include <tools/OahuScene.h>
+#include <tools/SampledCases.h>
 
 #include <osg/AnimationPath>
 #include <osg/PagedLOD>
@@ -603,5 +604,6 @@ TEST_P(TilePrefetching, APathDoesNotLeadSlavesWithMatricesOfTheirOwn)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Oahu, TilePrefetching, ::testing::Values("oahu", "oahu_projected"),
+INSTANTIATE_TEST_SUITE_P(Oahu, TilePrefetching,
+                         ::testing::ValuesIn(sampledCases<const char*>({"oahu", "oahu_projected"}, 2)),
                          [](const auto& each) { return std::string(each.param); });

@@ -277,7 +277,7 @@ protected:
 
 TEST_F(DrawnTriangles, OfMountainsAreNotManyMoreThanTheLeast)
 {
-    const Mountains ground(fullTest() ? 4097 : 1025, 30.0, 5);
+    const Mountains ground(fullTest() ? 4097 : 769, 30.0, 5);
     const BuildOptions built = options(ground.write(folder / "dem.tif"), folder / "db");
     buildDatabase(built);
     // Twice is what is asked, and the full test demands it; these rough mountains are not there yet. What the short one demands
@@ -366,7 +366,7 @@ TEST_F(DrawnTriangles, OfAFlightDoNotPop)
     buildDatabase(built);
     const Loaded loaded(built.output);
     ASSERT_TRUE(loaded.renderer);
-    const int steps = fullTest() ? 200 : 20;
+    const int steps = fullTest() ? 200 : 10;
     // As an airliner flies from frame to frame: what moves hardly changes the picture, and what pops would.
     constexpr double step = 2.0;
     std::vector<std::vector<double>> changes;

@@ -8,11 +8,11 @@
 #include <osgGeoFX/scene/EffectScene.h>
 #include <tools/HostPrograms.h>
 
-#include <array>
 #include <cmath>
 #include <ostream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace geofx::test
 {
@@ -32,16 +32,16 @@ struct DepthKind
     bool clipControl = false; ///< glClipControl(GL_ZERO_TO_ONE)
     osgGeoFX::DepthConvention::Kind convention = osgGeoFX::DepthConvention::OF_PROJECTION;
 
-    static const std::array<DepthKind, 6>& all()
+    static const std::vector<DepthKind>& all()
     {
         using Convention = osgGeoFX::DepthConvention;
-        static const std::array<DepthKind, 6> kinds = {
-            {{"reversed", REVERSED, true},
-             {"reversedInfinite", REVERSED_INFINITE, true},
-             {"reversedWithoutClipControl", REVERSED},
-             {"reversedInfiniteWithoutClipControl", REVERSED_INFINITE},
-             {"logarithmic", STANDARD, false, Convention::LOGARITHMIC},
-             {"logarithmicByFragment", STANDARD, false, Convention::LOGARITHMIC_BY_FRAGMENT}}};
+        static const std::vector<DepthKind> kinds = {
+            {"reversed", REVERSED, true},
+            {"reversedInfinite", REVERSED_INFINITE, true},
+            {"reversedWithoutClipControl", REVERSED},
+            {"reversedInfiniteWithoutClipControl", REVERSED_INFINITE},
+            {"logarithmic", STANDARD, false, Convention::LOGARITHMIC},
+            {"logarithmicByFragment", STANDARD, false, Convention::LOGARITHMIC_BY_FRAGMENT}};
         return kinds;
     }
 
