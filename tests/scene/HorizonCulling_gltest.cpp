@@ -7,6 +7,7 @@
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 #include <tools/CullHarness.h>
 #include <tools/GlFixture.h>
 #include <tools/ImageComparison.h>
@@ -21,6 +22,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
+#include <vector>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -55,6 +58,17 @@ osg::Matrixd randomView(Random& random)
     const osg::Vec3d ahead = osg::Quat(random.uniform(-osg::PI, osg::PI), up) * east;
     return osg::Matrixd::lookAt(eye, eye + (ahead * std::cos(pitch) + up * std::sin(pitch)) * 1000.0, up);
 }
+
+/// Near and far, metres.
+struct DepthsOf
+{
+    explicit DepthsOf(const Culled& culled)
+    {
+        double angle = 0.0, aspect = 0.0;
+        EXPECT_TRUE(culled.projection.getPerspective(angle, aspect, nearest, farthest));
+    }
+    double nearest = 0.0, farthest = 0.0;
+};
 
 /// What the depth buffer has to tell apart is far away. The near plane must not cut ground that a bend has brought near: through the
 /// hole one would see the inside of the Earth's far side, which the horizon hides.
@@ -125,6 +139,61 @@ TEST_F(HorizonCulling, PicturesOfAWholeEarthAreThoseWithoutIt)
     }
     EXPECT_LT(with, without) << "nothing was left out beyond the horizon";
     std::cout << "drawables that stay where they are: " << with << " in the place of " << without << "\n";
+}
+
+// Tiles on the far side of the Earth lie where no projection has a place for them.
+TEST_F(HorizonCulling, NearAndFarAreNumbersUnderAnyEffect)
+{
+    const std::optional<Scene> oahu = loadOahu("oahu_globe");
+    if (!oahu) return;
+    EffectScene& scene = *oahu->effects;
+    CullHarness harness(context(), oahu->effects, WIDTH, HEIGHT);
+    struct Eye
+    {
+        double longitude, latitude, height, pitch;
+    };
+    const Eye eyes[] = {{-121.9, 46.55, 8000.0, -30.0}, {20.0, 10.0, 8000.0, -30.0},
+                        {20.0, 10.0, 8000.0, -5.0},     {179.9, -89.5, 60.0, -10.0},
+                        {0.0, 0.0, 8e5, -60.0},         {-158.0, 21.4, 2e7, -90.0}};
+    const osg::ref_ptr<osg::EllipsoidModel> earth = new osg::EllipsoidModel;
+    for (const osg::ref_ptr<Effect>& effect : std::vector<osg::ref_ptr<Effect>>{
+             new PanoramaMap, new BirdsEyeView, new PedestrianView, new VerticalExaggeration})
+    {
+        if (auto* exaggeration = dynamic_cast<VerticalExaggeration*>(effect.get()))
+            exaggeration->setFactor(2.0);
+        while (scene.getNumEffects() > 0)
+            scene.removeEffect(scene.getEffect(0));
+        scene.addEffect(effect);
+        for (const auto mode : {osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES,
+                                osg::CullSettings::COMPUTE_NEAR_USING_PRIMITIVES,
+                                osg::CullSettings::COMPUTE_NEAR_FAR_USING_PRIMITIVES})
+        {
+            harness.camera().setComputeNearFarMode(mode);
+            for (const Eye& eye : eyes)
+            {
+                SCOPED_TRACE(std::string(effect->className()) + " " + std::to_string(mode) + " " +
+                             std::to_string(eye.height) + " " + std::to_string(eye.pitch));
+                osg::Matrixd place;
+                earth->computeLocalToWorldTransformFromLatLongHeight(osg::DegreesToRadians(eye.latitude),
+                                                                     osg::DegreesToRadians(eye.longitude),
+                                                                     eye.height, place);
+                const osg::Matrixd view = osg::Matrixd::inverse(
+                    osg::Matrixd::rotate(osg::DegreesToRadians(90.0 + eye.pitch), osg::X_AXIS) * place);
+                harness.setCamera(
+                    view, osg::Matrixd::perspective(40.0, static_cast<double>(WIDTH) / HEIGHT, 1.0, 1e8));
+                Random random(7);
+                for (int step = 0; step < 2; ++step)
+                    CullHarness::load(harness.frame(true, false).requests, random, 1.0);
+                const Culled culled = harness.frame(true, false);
+                EXPECT_GT(culled.leaves.size(), 0u);
+                const DepthsOf depths(culled);
+                EXPECT_TRUE(std::isfinite(depths.nearest) && std::isfinite(depths.farthest));
+                EXPECT_GT(depths.nearest, 0.0);
+                EXPECT_GT(depths.farthest, depths.nearest);
+                EXPECT_LT(depths.farthest, 1e9);
+            }
+        }
+    }
 }
 
 TEST_F(HorizonCulling, PicturesOfPlainOsgAreThoseWithoutIt)

@@ -55,6 +55,9 @@ double rounding(const osg::Vec3d& point)
 /// The share of a box's radius by which near and far may lie farther apart than needed.
 constexpr double coarse = 0.1;
 
+/// Metres; 15 Earths. Bounds that are wider say nothing.
+constexpr double BOUNDLESS = 2e8;
+
 } // namespace
 
 void EyeFrustum::set(const osg::Polytope* planes, const osg::Matrixd& projection, bool sides)
@@ -201,7 +204,7 @@ void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationC
         include(depth - half, depth + half);
         return;
     }
-    _candidates.push_back({box, &chain, depth - deformed.radius, depth + deformed.radius, margin, {}});
+    _candidates.push_back({box, &chain, depth - deformed.radius, depth + deformed.radius, margin, mesh});
 }
 
 void DepthRange::measure(Candidate& candidate)
@@ -209,6 +212,17 @@ void DepthRange::measure(Candidate& candidate)
     const bool mesh = _meshes != Meshes::No && candidate.mesh.drawable;
     double nearest = candidate.nearest;
     double farthest = candidate.farthest;
+    const auto measureMesh = [&]
+    {
+        if (!candidate.mesh.drawable || !_frustum) return false;
+        const MeshDepths measured(*candidate.mesh.drawable, candidate.mesh.modelView, *candidate.chain,
+                                  _frustum->planes(), _depths);
+        if (!measured.known) return false;
+        nearest = measured.nearest;
+        farthest = measured.farthest;
+        return true;
+    };
+    bool isKnown = true;
     if (!candidate.ofBox)
     {
         candidate.chain->bound(candidate.box, _hull, coarse);
@@ -220,6 +234,8 @@ void DepthRange::measure(Candidate& candidate)
             nearest = std::min(nearest, depthOf(point) - _hull.margin);
             farthest = std::max(farthest, depthOf(point) + _hull.margin);
         }
+        // A projection has no bounds for what lies on the far side of the Earth. The triangles tell where they are drawn.
+        const bool isBounded = nearest > -BOUNDLESS && farthest < BOUNDLESS;
         if (mesh)
         {
             // The triangles follow, where the box still counts.
@@ -227,23 +243,19 @@ void DepthRange::measure(Candidate& candidate)
             candidate.nearest = std::max(candidate.nearest, nearest);
             candidate.farthest = std::min(candidate.farthest, farthest);
             if (_meshes == Meshes::NearAndFar) return;
+            if (!isBounded) candidate.farthest = measureMesh() ? farthest : -DBL_MAX;
             if (candidate.farthest >= 0.0) _farthest = std::max(_farthest, candidate.farthest);
             candidate.farthest = -DBL_MAX;
             return;
         }
+        isKnown = isBounded || measureMesh();
     }
     else
     {
-        const MeshDepths measured(*candidate.mesh.drawable, candidate.mesh.modelView, *candidate.chain,
-                                  _frustum->planes(), _depths);
-        if (measured.known)
-        {
-            nearest = measured.nearest;
-            farthest = _meshes == Meshes::NearAndFar ? measured.farthest : measured.nearest;
-            if (measured.nearest > measured.farthest) farthest = -DBL_MAX;
-        }
+        isKnown = measureMesh() || nearest > -BOUNDLESS;
+        if (_meshes == Meshes::Near && nearest < DBL_MAX) farthest = nearest;
     }
-    if (std::isfinite(nearest) && std::isfinite(farthest) && nearest <= farthest) include(nearest, farthest);
+    if (isKnown && nearest <= farthest) include(nearest, farthest);
     // The candidate is done.
     candidate.nearest = DBL_MAX;
     candidate.farthest = -DBL_MAX;
