@@ -257,7 +257,8 @@ std::string faultOf(const std::string& path, bool mayBeFolder)
 
 std::string ScenePlace::message(const std::string& text) const
 {
-    return file + ":" + std::to_string(line) + ": <" + element + ">: " + text;
+    return file + (line > 0 ? ":" + std::to_string(line) : "") + (file.empty() ? "<" : ": <") + element +
+           ">: " + text;
 }
 
 namespace
@@ -278,7 +279,7 @@ SceneResult parse(const XmlDocument& document, const std::string& file, const st
 SceneResult parseScene(const std::string& text, const std::string& file, const std::string& folder)
 {
     SceneResult result;
-    const XmlDocument document = readSceneXml(text, file, SceneElement::OUTERMOST, result.errors);
+    const XmlDocument document = readSceneXml(text, file, result.errors);
     result = parse(document, file, folder, std::move(result));
     if (result.scene && result.scene->engine)
     {
@@ -291,10 +292,11 @@ SceneResult parseScene(const std::string& text, const std::string& file, const s
     return result;
 }
 
-SceneResult parseEngineScene(const std::string& text, const std::string& file, const std::string& folder)
+SceneResult parseEngineScene(const SceneElement& part, const std::string& text, const std::string& file,
+                             const std::string& folder)
 {
     SceneResult result;
-    const XmlDocument document = readSceneXml(text, file, SceneElement::ANYWHERE, result.errors);
+    const XmlDocument document = makeSceneXml(part, text, file, result.errors);
     result = parse(document, file, folder, std::move(result));
     if (!result.scene) return result;
     const SceneFile& scene = *result.scene;

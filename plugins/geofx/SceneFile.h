@@ -28,10 +28,10 @@ namespace osgGeoFX
 struct ScenePlace
 {
     std::string file; ///< as the person named it
-    int line = 0;
+    int line = 0;     ///< 0: not known
     std::string element;
 
-    /// `FILE:LINE: <element>: text`
+    /// `FILE:LINE: <element>: text`, without what is not known
     std::string message(const std::string& text) const;
 };
 
@@ -321,9 +321,18 @@ constexpr std::size_t largestScene = 16 * 1024 * 1024;
 /// Reads the text of a scene. `file` is for messages; relative paths start at `folder`. No file is opened.
 SceneResult parseScene(const std::string& text, const std::string& file, const std::string& folder);
 
-/// Reads the scene that is a part of an engine's file, such as an .earth file: its first element <geofx>. Its terrain is the
-/// engine's.
-SceneResult parseEngineScene(const std::string& text, const std::string& file, const std::string& folder);
+/// An element or attribute of XML as an engine hands it over, which may have lost the case of names, and which of the two it was.
+struct SceneElement
+{
+    std::string name;
+    std::string value; ///< of an attribute; the text of an element
+    std::vector<SceneElement> children;
+};
+
+/// Reads the scene that is a part of an engine's file, such as an .earth file: the element <geofx>. Its terrain is the engine's.
+/// Messages have the lines of the first <geofx> in `text`, which may be empty where the engine's file cannot be had.
+SceneResult parseEngineScene(const SceneElement& scene, const std::string& text, const std::string& file,
+                             const std::string& folder);
 
 /// All files that the scene names, in its order; not the names of ready legends, nor the cache.
 std::vector<ScenePath> filesOf(const SceneFile& scene);

@@ -11,6 +11,7 @@
 #include <libxml/xmlschemastypes.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <mutex>
@@ -162,6 +163,8 @@ private:
         for (xmlNode* node = parent->children; node; node = node->next)
         {
             if (node->type != XML_ELEMENT_NODE) continue;
+            // Attributes of elements within are theirs.
+            if (is(node, "element") && std::strcmp(kind, "element") != 0) continue;
             if (!is(node, kind))
                 collect(referred(node), kind, requiredOnly, names);
             else if (!requiredOnly || attributeOf(node, "use") == "required")
@@ -351,9 +354,98 @@ xmlNode* firstScene(xmlNode* parent)
     return nullptr;
 }
 
+/// The name among `names` that differs from `name` in case at most; empty for none.
+std::string spelled(const std::vector<std::string>& names, const std::string& name)
+{
+    const auto found =
+        std::find_if(names.begin(), names.end(),
+                     [&](const std::string& each)
+                     { return xmlStrcasecmp(xmlChars(each.c_str()), xmlChars(name.c_str())) == 0; });
+    return found == names.end() ? std::string() : *found;
+}
+
+/// The node and all below. A child is an attribute if the schema has one of its name, or has no such element either.
+xmlNode* makeElement(const SceneElement& from, const std::string& name, Findings& findings)
+{
+    xmlNode* node = xmlNewNode(nullptr, xmlChars(name.c_str()));
+    const std::vector<std::string> attributes = findings.schema.namesIn(name, "attribute");
+    const std::vector<std::string> elements = findings.schema.namesIn(name, "element");
+    const auto isText = [&](const std::string& text)
+    {
+        if (xmlCheckUTF8(xmlChars(text.c_str()))) return true;
+        findings.add(node, "a text in this element is not UTF-8; expected: a file in UTF-8.");
+        return false;
+    };
+    for (const SceneElement& child : from.children)
+    {
+        // XML's own attributes, such as the place of a schema, are none of the scene's. A file that cannot be included has no name.
+        if (child.name.empty() || child.name.find(':') != std::string::npos) continue;
+        if (!isText(child.name) || !isText(child.value)) continue;
+        const std::string attribute = spelled(attributes, child.name);
+        const std::string element = spelled(elements, child.name);
+        const bool isKnown = !attribute.empty() || !element.empty();
+        const bool isAttribute =
+            child.children.empty() && (isKnown ? !attribute.empty() : !child.value.empty());
+        if (!isAttribute)
+            xmlAddChild(node, makeElement(child, element.empty() ? child.name : element, findings));
+        else
+            xmlNewProp(node, xmlChars((attribute.empty() ? child.name : attribute).c_str()),
+                       xmlChars(child.value.c_str()));
+    }
+    if (!from.value.empty() && isText(from.value)) xmlNodeAddContent(node, xmlChars(from.value.c_str()));
+    return node;
+}
+
+/// What can be read of a text, however malformed it is; null for nothing. No document type is read.
+XmlDocument readLeniently(const std::string& text)
+{
+    if (text.empty() || text.size() > largestScene) return nullptr;
+    xmlParserCtxt* parser = xmlNewParserCtxt();
+    parser->sax->internalSubset = nullptr;
+    XmlDocument document(xmlCtxtReadMemory(
+        parser, text.data(), static_cast<int>(text.size()), nullptr, nullptr,
+        XML_PARSE_NONET | XML_PARSE_BIG_LINES | XML_PARSE_RECOVER | XML_PARSE_NOERROR | XML_PARSE_NOWARNING));
+    xmlFreeParserCtxt(parser);
+    return document;
+}
+
+/// Gives elements the lines of those in a text, down to the first that is another one there.
+void takeLines(xmlNode* node, const xmlNode* from)
+{
+    node->line = from->line;
+    xmlNode* child = xmlFirstElementChild(node);
+    for (const xmlNode* other = xmlFirstElementChild(const_cast<xmlNode*>(from)); child && other;
+         child = xmlNextElementSibling(child), other = xmlNextElementSibling(const_cast<xmlNode*>(other)))
+    {
+        if (xmlStrcasecmp(child->name, other->name) != 0) return;
+        takeLines(child, other);
+    }
+}
+
+/// The types of the schema are made at their first use, which two threads must not do at once.
+void initialize()
+{
+    static std::once_flag once;
+    std::call_once(once,
+                   []
+                   {
+                       xmlInitParser();
+                       xmlSchemaInitTypes();
+                   });
+}
+
 void validate(xmlDoc* document, Findings& findings)
 {
-    markGiven(xmlDocGetRootElement(document));
+    xmlNode* root = xmlDocGetRootElement(document);
+    const std::string version = attributeOf(root, "version");
+    if (is(root, "geofx") && !root->ns && !version.empty() && version != "1")
+    {
+        findings.add(root, "version=\"" + version + "\" is not known to this osgGeoFX; expected: " +
+                               findings.schema.expectation("geofx", "version") +
+                               ". A newer osgGeoFX may read this scene.");
+        return;
+    }
+    markGiven(root);
     xmlSchemaValidCtxt* validator = xmlSchemaNewValidCtxt(findings.schema.compiled());
     xmlSchemaSetValidStructuredErrors(validator, &Findings::invalid, &findings);
     xmlSchemaSetValidOptions(validator, XML_SCHEMA_VAL_VC_I_CREATE); // fills in the defaults
@@ -378,17 +470,9 @@ bool isGiven(xmlNode* element, const char* name)
     return attribute && attribute->_private;
 }
 
-XmlDocument readSceneXml(const std::string& text, const std::string& file, SceneElement which,
-                         std::vector<std::string>& errors)
+XmlDocument readSceneXml(const std::string& text, const std::string& file, std::vector<std::string>& errors)
 {
-    // The types of the schema are made at their first use, which two threads must not do at once.
-    static std::once_flag once;
-    std::call_once(once,
-                   []
-                   {
-                       xmlInitParser();
-                       xmlSchemaInitTypes();
-                   });
+    initialize();
     Findings findings(file, errors);
     if (text.empty() || text.size() > largestScene)
     {
@@ -407,27 +491,24 @@ XmlDocument readSceneXml(const std::string& text, const std::string& file, Scene
     xmlFreeParserCtxt(parser);
     xmlNode* root = document ? xmlDocGetRootElement(document.get()) : nullptr;
     if (!root && errors.empty()) findings.add(1, "geofx", "nothing stands here; expected: a scene in XML.");
-    if (!errors.empty()) return nullptr;
-    if (which == SceneElement::ANYWHERE && !is(root, "geofx"))
-    {
-        root = firstScene(root);
-        if (!root)
-        {
-            findings.add(1, "geofx", "the file has no scene; expected: an element <geofx>.");
-            return nullptr;
-        }
-        xmlFreeNode(xmlDocSetRootElement(document.get(), root));
-    }
+    if (errors.empty()) validate(document.get(), findings);
+    return errors.empty() ? std::move(document) : nullptr;
+}
 
-    const std::string version = attributeOf(root, "version");
-    if (is(root, "geofx") && !root->ns && !version.empty() && version != "1")
-        findings.add(root, "version=\"" + version + "\" is not known to this osgGeoFX; expected: " +
-                               findings.schema.expectation("geofx", "version") +
-                               ". A newer osgGeoFX may read this scene.");
-    else
-        validate(document.get(), findings);
-    if (!errors.empty()) return nullptr;
-    return document;
+XmlDocument makeSceneXml(const SceneElement& scene, const std::string& text, const std::string& file,
+                         std::vector<std::string>& errors)
+{
+    initialize();
+    Findings findings(file, errors);
+    XmlDocument document(xmlNewDoc(xmlChars("1.0")));
+    xmlDocSetRootElement(document.get(), makeElement(scene, scene.name, findings));
+    if (const XmlDocument whole = readLeniently(text))
+    {
+        if (const xmlNode* first = firstScene(reinterpret_cast<xmlNode*>(whole.get())))
+            takeLines(xmlDocGetRootElement(document.get()), first);
+    }
+    if (errors.empty()) validate(document.get(), findings);
+    return errors.empty() ? std::move(document) : nullptr;
 }
 
 } // namespace osgGeoFX

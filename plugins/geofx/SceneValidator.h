@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include "SceneFile.h"
+
 #include <libxml/tree.h>
 
 #include <cstddef>
@@ -27,17 +29,14 @@ std::string attributeOf(xmlNode* element, const char* name);
 /// Whether the person has written an attribute; the schema's defaults are not.
 bool isGiven(xmlNode* element, const char* name);
 
-/// Which element of a text is the scene.
-enum class SceneElement
-{
-    OUTERMOST,
-    ANYWHERE ///< the first <geofx> of the text, whatever stands around it
-};
-
 /** A scene's XML, checked against the schema and with the schema's defaults filled in. Null, with sentences
    in `errors` that name `file`, where it is no scene of this version. Nothing but `text` is read: no DTD, no
    entity and no schema that the text names. The scene is the outermost element of the document. */
-XmlDocument readSceneXml(const std::string& text, const std::string& file, SceneElement which,
+XmlDocument readSceneXml(const std::string& text, const std::string& file, std::vector<std::string>& errors);
+
+/** The same of a scene that an engine has read from its own file. Names have the schema's spelling then. Lines are those of the first
+   <geofx> in `text`, as far as its elements are those of the scene; `text` may be malformed or empty. */
+XmlDocument makeSceneXml(const SceneElement& scene, const std::string& text, const std::string& file,
                          std::vector<std::string>& errors);
 
 } // namespace osgGeoFX

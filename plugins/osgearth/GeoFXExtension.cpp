@@ -19,6 +19,7 @@
 #include <osgEarth/MapNode>
 #include <osgEarth/NodeUtils>
 #include <osgEarth/TerrainEngineNode>
+#include <osgEarth/URI>
 
 #include <osgUtil/CullVisitor>
 
@@ -36,8 +37,8 @@ namespace osgGeoFX
 
 /** Puts an EffectScene above a MapNode.
 
-    The element is read again from the .earth file, as scene files are, since osgEarth's own reader makes all names lower
-    case. All faults of it are warnings with the file and the line; the map is drawn without effects then.
+    The scene is what osgEarth has read of the element, so maps may come from anywhere and include files. All faults of it are
+    warnings, with the file and the line where the map is a file or has an address; the map is drawn without effects then.
 
     Threads: as for osgEarth's extensions, which are added and removed between frames. */
 class GeoFXExtension : public osgEarth::Extension, public osgEarth::ExtensionInterface<osgEarth::MapNode>
@@ -85,21 +86,31 @@ protected:
     ~GeoFXExtension() override = default;
 
 private:
+    static SceneElement elementOf(const osgEarth::Config& config)
+    {
+        SceneElement element{config.key(), config.value(), {}};
+        for (const osgEarth::Config& child : config.children())
+            element.children.push_back(elementOf(child));
+        return element;
+    }
+
     SceneResult readScene() const
     {
-        const std::string file = _config.getConfig().referrer();
-        SceneResult result;
+        const osgEarth::Config& config = _config.getConfig();
+        // A map from a string refers to nothing. Its files are sought from where the program runs.
+        std::string file = config.referrer(), text;
         const std::string path = osgDB::findDataFile(file, _options.get());
-        if (file.empty() || path.empty())
+        if (!path.empty())
         {
-            result.errors.push_back(
-                "osgGeoFX reads <geofx> from the .earth file itself, and \"" + file +
-                "\" is not a file; load the map from a file, or put an osgGeoFX::EffectScene above the "
-                "MapNode.");
-            return result;
+            file = path;
+            text = readSceneText(path);
         }
-        const std::string folder = osgDB::getFilePath(osgDB::getRealPath(path));
-        result = parseEngineScene(readSceneText(path), path, folder);
+        else if (!file.empty())
+            text = osgEarth::URI(file).readString(_options.get()).getString();
+        const bool isAddress = file.find("://") != std::string::npos;
+        const std::string folder = osgDB::getFilePath(isAddress ? file : osgDB::getRealPath(file));
+        SceneResult result = parseEngineScene(elementOf(config), text, file,
+                                              folder.empty() ? osgDB::getCurrentWorkingDirectory() : folder);
         if (!result.scene) return result;
         result.errors = faultsOfFiles(*result.scene, folder, _options.get());
         result.scene->anywhere = isAllowedOutside(_options.get());

@@ -6,6 +6,7 @@
 #include <osgGeoFX/map/MapContents.h>
 #include <osgGeoFX/map/MapReader.h>
 #include <osgGeoFX/viewer/Scene.h>
+#include <tools/EngineElements.h>
 #include <tools/GeofxPlugins.h>
 #include <tools/HeightMesh.h>
 #include <tools/NotifyWatch.h>
@@ -155,9 +156,9 @@ TEST_F(SceneMap, SaysWhichFilesAndHowTheyLook)
         EXPECT_EQ(refused.errors[0].rfind("a.geofx:2: <", 0), 0u) << refused.errors[0];
     }
     // An engine's terrain is not there yet when its file is read.
-    const SceneResult engine = osgGeoFX::parseEngineScene(
-        "<map><geofx version='1'><terrain><engine/></terrain>\n<map><mapNames file='a'/></map></geofx></map>",
-        "x.earth", "/maps");
+    const SceneResult engine =
+        geofx::test::parseMap("<map><geofx version='1'><terrain><engine/></terrain>\n<map><mapNames "
+                              "file='a'/></map></geofx></map>");
     EXPECT_FALSE(engine.scene);
     ASSERT_EQ(engine.errors.size(), 1u);
     EXPECT_EQ(engine.errors[0].rfind("x.earth:2: <map>: names and lines are put on terrains", 0), 0u)

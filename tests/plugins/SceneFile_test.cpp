@@ -43,59 +43,6 @@ SceneFile parsed(const std::string& text)
     return result.scene.value_or(SceneFile());
 }
 
-TEST(SceneFile, MayBeAPartOfAnEnginesFile)
-{
-    using osgGeoFX::parseEngineScene;
-    const std::string map =
-        "<map name='x'>\n  <Options Foo='bar'/>\n  <Extensions>\n    <geofx version='1'>\n"
-        "      <terrain><engine minHeight='-5' maxHeight='900' culling='open'/></terrain>\n"
-        "      <effects>\n        <birdsEyeView focusLine='0.4'/>\n      </effects>\n"
-        "    </geofx>\n  </Extensions>\n</map>\n";
-    const SceneResult read = parseEngineScene(map, "x.earth", "/maps");
-    ASSERT_TRUE(read.scene) << ::testing::PrintToString(read.errors);
-    ASSERT_TRUE(read.scene->engine);
-    EXPECT_EQ(read.scene->engine->culling, osgGeoFX::EffectScene::OPEN);
-    EXPECT_EQ(read.scene->ground.minHeight, -5.0);
-    EXPECT_EQ(read.scene->ground.maxHeight, 900.0);
-    ASSERT_EQ(read.scene->effects.size(), 1u);
-    EXPECT_STREQ(read.scene->effects[0]->className(), "BirdsEyeView");
-
-    const auto errorOf = [](const std::string& text)
-    {
-        const SceneResult result = parseEngineScene(text, "x.earth", "/maps");
-        EXPECT_FALSE(result.scene);
-        EXPECT_EQ(result.errors.size(), 1u) << ::testing::PrintToString(result.errors);
-        return result.errors.empty() ? std::string() : result.errors.front();
-    };
-    // The engine's tiles do not say what lies on the ground.
-    std::string covered = map;
-    covered.replace(covered.find("focusLine='0.4'"), 15, "coverMap='true'");
-    EXPECT_NE(errorOf(covered).find("bends without coverMap"), std::string::npos) << errorOf(covered);
-    // Lines are those of the whole file.
-    std::string wrong = map;
-    wrong.replace(wrong.find("focusLine"), 9, "focusLane");
-    EXPECT_EQ(errorOf(wrong).rfind("x.earth:7: <birdsEyeView>:", 0), 0u) << errorOf(wrong);
-    EXPECT_NE(errorOf("<map/>").find("expected: an element <geofx>"), std::string::npos);
-    const auto mapWith = [](const std::string& inside)
-    {
-        return "<map><geofx version='1'>" + inside + "</geofx></map>";
-    };
-    EXPECT_NE(errorOf(mapWith(terrain)).find("expected: <engine/>"), std::string::npos);
-    const std::string engine = "<terrain><engine/></terrain>";
-    EXPECT_NE(errorOf(mapWith(engine + "<sun azimuth='0' elevation='5'/>")).find("<sky>"), std::string::npos);
-    EXPECT_NE(errorOf(mapWith(engine + "<background color='#ffffff'/>")).find("<background>"),
-              std::string::npos);
-    EXPECT_NE(
-        errorOf(mapWith(engine + "<homeView longitude='0' latitude='0' height='9' heading='0' pitch='0'/>"))
-            .find("<viewpoints>"),
-        std::string::npos);
-    // A scene file has a terrain of its own.
-    const SceneResult alone = parseScene("<geofx version='1'>" + engine + "</geofx>", "x.geofx", "/scenes");
-    EXPECT_FALSE(alone.scene);
-    ASSERT_EQ(alone.errors.size(), 1u);
-    EXPECT_NE(alone.errors[0].find(".earth"), std::string::npos);
-}
-
 TEST(SceneFile, ReadsAllThatASceneSays)
 {
     const SceneFile scene = parsed(R"(<geofx version="1">
