@@ -132,7 +132,8 @@ TEST_F(SurfaceVectors, OfNoUseAreToldWithFileAndMend)
     holds(sentence(far, 10.0, white), "nothing in the rectangle");
     holds(sentence((_folder / "none.geojson").string(), 10.0, white), "there is no such file");
     holds(sentence(_folder.write("text.geojson", "{").string(), 10.0, white), "check it with ogrinfo");
-    holds(sentence(raster(4, 4).write(_folder / "r.tif"), 10.0, white), "make areas of it with gdal_polygonize");
+    holds(sentence(raster(4, 4).write(_folder / "r.tif"), 10.0, white),
+          "make areas of it with gdal_polygonize");
     holds(
         sentence(_folder.write("no.csv", "id,WKT\n1,\"LINESTRING(600000 200000,600001 200001)\"\n").string(),
                  10.0, white),

@@ -299,5 +299,5 @@ TEST_P(DeservedTiles, NoTileIsMissingAndNoneIsCoarserThanItsErrorAllows)
 }
 
 INSTANTIATE_TEST_SUITE_P(Oahu, DeservedTiles,
-                         ::testing::ValuesIn(sampledCases<const char*>({"oahu", "oahu_projected"}, 2, 1)),
+                         ::testing::ValuesIn(sampledCases<const char*>({"oahu", "oahu_projected"}, 2)),
                          [](const auto& each) { return std::string(each.param); });
