@@ -358,7 +358,13 @@ osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double 
             error = "The frame could not be read back; check the OpenGL driver.";
             return nullptr;
         }
-        const bool here = parts.monitor->frameFinished() || !parts.options.waitForTiles;
+        bool here = parts.monitor->frameFinished() || !parts.options.waitForTiles;
+        if (!here && draws)
+        {
+            // A thread of the pager that wakes up late, when all is read, looks as if it read.
+            parts.monitor->waitForReads(parts.options.timeout - secondsSince(start));
+            here = parts.monitor->frameFinished();
+        }
         const bool waits = here && draws && parts.options.waitForTiles && !hasAllData(*parts.effects);
         done = here && draws && !waits;
         draws = here;

@@ -31,7 +31,10 @@ PagerMonitor::PagerMonitor(osgDB::DatabasePager* pager, TileGuard* guard, unsign
 bool PagerMonitor::frameFinished()
 {
     osg::ref_ptr<osgDB::DatabasePager> pager;
-    const bool busy = _pager.lock(pager) && pager->getRequestsInProgress();
+    // OSG looks at the list of tiles to merge before it looks whether a thread reads. A tile that goes from the one to the other
+    // between the two looks is in neither, and a second look finds it.
+    const bool busy =
+        _pager.lock(pager) && (pager->getRequestsInProgress() || pager->getRequestsInProgress());
     _quiet = busy ? 0 : _quiet + 1;
     return _quiet >= _quietFrames;
 }
