@@ -34,7 +34,7 @@ bool isGiven(xmlNode* element, const char* name);
    entity and no schema that the text names. The scene is the outermost element of the document. */
 XmlDocument readSceneXml(const std::string& text, const std::string& file, std::vector<std::string>& errors);
 
-/** The same of a scene that an engine has read from its own file. Names have the schema's spelling then. Lines are those of the first
+/** Makes the checked XML of a scene that an engine has read from its own file. Names get the schema's spelling. Lines are those of the first
    <geofx> in `text`, as far as its elements are those of the scene; `text` may be malformed or empty. */
 XmlDocument makeSceneXml(const SceneElement& scene, const std::string& text, const std::string& file,
                          std::vector<std::string>& errors);

@@ -108,9 +108,9 @@ private:
         else if (!file.empty())
             text = osgEarth::URI(file).readString(_options.get()).getString();
         const bool isAddress = file.find("://") != std::string::npos;
-        const std::string folder = osgDB::getFilePath(isAddress ? file : osgDB::getRealPath(file));
-        SceneResult result = parseEngineScene(elementOf(config), text, file,
-                                              folder.empty() ? osgDB::getCurrentWorkingDirectory() : folder);
+        std::string folder = osgDB::getFilePath(isAddress ? file : osgDB::getRealPath(file));
+        if (folder.empty()) folder = osgDB::getCurrentWorkingDirectory();
+        SceneResult result = parseEngineScene(elementOf(config), text, file, folder);
         if (!result.scene) return result;
         result.errors = faultsOfFiles(*result.scene, folder, _options.get());
         result.scene->anywhere = isAllowedOutside(_options.get());
