@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace osgGeoFX
 {
@@ -62,6 +63,10 @@ public:
         const double k = _view.curvature;
         const double second = std::abs(_view.factor - 1.0) * 1.3 * (3.0 * k + 3.0 * k * k * lift);
         return {second * edge.length2(), 0.0};
+    }
+    std::optional<double> movedHeight(double height) const override
+    {
+        return _view.base + _view.factor * (height - _view.base);
     }
     Uniforms uniforms() const override
     {

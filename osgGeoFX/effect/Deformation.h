@@ -130,6 +130,10 @@ public:
     /// Whether hides() or complaint() can ever give an answer. Where this is false, culling need not ask them and tests
     /// fewer boxes. True by default.
     virtual bool looksAtBoxes() const { return true; }
+    /// The deformed height of a position at `height`, both above the ground's zero height, metres, where the deformation moves
+    /// each position along its vertical, by a continuous function of its height that never falls. Empty, the default, for other
+    /// deformations. Culling derives the horizon of the deformed globe from it.
+    virtual std::optional<double> movedHeight([[maybe_unused]] double height) const { return std::nullopt; }
     /// A sentence that tells why something in this box cannot be drawn well; empty where it can. The scene prints it
     /// once, as a warning.
     virtual std::string complaint(const EyeBox&) const { return {}; }

@@ -29,7 +29,8 @@ EffectScene::EffectScene(const EffectScene& other, const osg::CopyOp& copy)
       _textureUnits(other._textureUnits), _firstBlockBinding(other._firstBlockBinding),
       _depthConvention(other._depthConvention), _shaderHost(other._shaderHost),
       _roleCallback(other._roleCallback), _groundDescription(other._groundDescription),
-      _engineCulling(other._engineCulling), _drawing(std::make_unique<SceneDrawing>())
+      _engineCulling(other._engineCulling), _engineTerrain(other._engineTerrain),
+      _layoutBins(other._layoutBins), _drawing(std::make_unique<SceneDrawing>())
 {
     if (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)
     {

@@ -185,6 +185,18 @@ public:
         are known, from the kit's database or from setGround(); state heights that include what stands on the ground. */
     void setEngineCulling(EngineCulling culling) { _engineCulling = culling; }
     EngineCulling getEngineCulling() const { return _engineCulling; }
+    /// Sets the node below which the engine culls its terrain by the horizon of a view point. That node gets the raised view point of
+    /// OPEN and PROXY, and all other nodes get the camera's own, which osgEarth's draping fits its texture to. Null, the default: any
+    /// node may cull so, and all get the raised one. The scene does not keep the node alive. Files do not keep it. Call it between frames.
+    void setEngineTerrain(const osg::Node* node) { _engineTerrain = node; }
+    const osg::Node* getEngineTerrain() const { return _engineTerrain.get(); }
+    /** Sets the names of render bins that lay things out in the picture, such as osgEarth's labels and icons; none by default.
+
+        A drawable in such a bin stands for the origin of its own frame. The scene moves that point with the ground. It leaves the
+        drawable's shape and colors alone, and draws it unless the deformed globe hides the point. The names are those of
+        osg::StateSet::setRenderBinDetails(). Files do not keep them. Call it between frames. */
+    void setLayoutBins(const std::vector<std::string>& names) { _layoutBins = names; }
+    const std::vector<std::string>& getLayoutBins() const { return _layoutBins; }
     /// Asks for the tiles of where the cameras will be; null, the default, for not looking ahead. Files do not keep it, and
     /// copies have none. Call it between frames.
     void setPrefetch(TilePrefetch* prefetch);
@@ -289,6 +301,8 @@ private:
     osg::ref_ptr<const CameraRoleCallback> _roleCallback;
     GroundDescription _groundDescription;
     EngineCulling _engineCulling = AS_IT_IS;
+    osg::observer_ptr<const osg::Node> _engineTerrain;
+    std::vector<std::string> _layoutBins;
     osg::ref_ptr<TilePrefetch> _prefetch;
     std::unique_ptr<SceneDrawing> _drawing;
     mutable std::mutex _terrainMutex;

@@ -19,4 +19,10 @@ double tilePixelSize(const osg::Node& tile, osg::NodeVisitor& visitor)
     return ours ? ours->pixelSize(tile) : -1.0;
 }
 
+std::optional<osg::Vec3d> raisedViewPoint(osg::NodeVisitor& visitor)
+{
+    auto* const ours = dynamic_cast<CompensatingCullVisitor*>(&visitor);
+    return ours ? ours->highPoint() : std::nullopt;
+}
+
 } // namespace osgGeoFX

@@ -6,6 +6,9 @@
 
 #include <osg/Node>
 #include <osg/NodeVisitor>
+#include <osg/Vec3d>
+
+#include <optional>
 
 namespace osgGeoFX
 {
@@ -34,5 +37,14 @@ OSGGEOFX_EXPORT bool isTileOutOfSight(const osg::Node& tile, osg::NodeVisitor& v
 
     @ingroup scene */
 OSGGEOFX_EXPORT double tilePixelSize(const osg::Node& tile, osg::NodeVisitor& visitor);
+
+/** A view point from which all ground that the deformed picture shows is above the horizon, for things of an engine that are culled by
+    the horizon of an undeformed globe, such as osgEarth's annotations: metres, in the frame of the scene's children. EffectScene::OPEN and
+    PROXY need it.
+
+    Empty for visitors that are not the scene's own, and where nothing is deformed.
+
+    @ingroup scene */
+OSGGEOFX_EXPORT std::optional<osg::Vec3d> raisedViewPoint(osg::NodeVisitor& visitor);
 
 } // namespace osgGeoFX

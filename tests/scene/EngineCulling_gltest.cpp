@@ -83,6 +83,18 @@ protected:
     osg::ref_ptr<FakeEngine> _engine;
 };
 
+/// A node of an engine beside its terrain, as osgEarth's draping has one.
+class ViewPointReader : public osg::Group
+{
+public:
+    void traverse(osg::NodeVisitor& visitor) override
+    {
+        if (osgUtil::CullVisitor* const cull = visitor.asCullVisitor()) viewPoint = cull->getViewPointLocal();
+        osg::Group::traverse(visitor);
+    }
+    osg::Vec3d viewPoint;
+};
+
 } // namespace
 
 TEST_F(EngineCulling, OpenLosesNothing)
@@ -137,7 +149,7 @@ TEST_F(EngineCulling, CloseUpsAloneLoseNothing)
     _engine->horizon = false; // right where nothing is deformed
     Random random(9);
     const int count = fullTest() ? 200 : 20;
-    int lost = 0;
+    int lost = 0, open = 0, proxy = 0;
     for (int i = 0; i < count; ++i)
     {
         SCOPED_TRACE("camera " + std::to_string(i));
@@ -149,9 +161,12 @@ TEST_F(EngineCulling, CloseUpsAloneLoseNothing)
         {
             _scene->setEngineCulling(culling);
             EXPECT_TRUE(same(*draw(), *expected)) << culling;
+            (culling == EffectScene::OPEN ? open : proxy) += _engine->drawn;
         }
     }
     EXPECT_GT(lost, count / 10);
+    std::cout << "the engine draws " << open << " tiles open, " << proxy << " with a proxy\n";
+    EXPECT_LT(proxy, 0.85 * open);
 }
 
 // Tiles of which the picture shows nothing stay coarse, and all others are as fine as they were.
@@ -236,7 +251,7 @@ TEST_F(EngineCulling, AProxyLosesNothingAndKeepsLittleElse)
                   << " with a proxy; " << needed << " are needed, " << static_cast<double>(proxy) / needed
                   << '\n';
         EXPECT_LT(proxy, open);
-        // The passes of close-ups let engines cull nothing, since a lifted region lies anywhere.
+        // `needed` counts what the passes of close-ups draw, too.
         if (effects.back() == _closeUps.get()) continue;
         all += proxy;
         allNeeded += needed;
@@ -244,6 +259,47 @@ TEST_F(EngineCulling, AProxyLosesNothingAndKeepsLittleElse)
             _scene->removeEffect(each);
     }
     EXPECT_LT(all, 1.3 * allNeeded);
+}
+
+// Engines fit textures to the eye's surroundings. From a raised eye these would be a continent.
+TEST_F(EngineCulling, AllButTheStatedTerrainGetTheCamerasViewPoint)
+{
+    const osg::ref_ptr<ViewPointReader> beside = new ViewPointReader, above = new ViewPointReader;
+    _scene->removeChild(_engine);
+    above->addChild(_engine);
+    _scene->addChild(above);
+    _scene->addChild(beside);
+    const osg::ref_ptr<VerticalExaggeration> high = new VerticalExaggeration;
+    high->setFactor(6.0);
+    const osg::ref_ptr<PedestrianView> pedestrian = new PedestrianView;
+    for (Effect* effect : {static_cast<Effect*>(high), static_cast<Effect*>(pedestrian)})
+    {
+        _scene->addEffect(effect);
+        Random random(12);
+        for (int i = 0; i < 6; ++i)
+        {
+            SCOPED_TRACE("camera " + std::to_string(i));
+            lookAnyhow(random);
+            if (!isDeformed()) continue;
+            const osg::ref_ptr<osg::Image> expected = drawAll();
+            const osg::Vec3d eye = osg::Matrixd::inverse(viewer().getCamera()->getViewMatrix()).getTrans();
+            for (const EffectScene::EngineCulling culling : {EffectScene::OPEN, EffectScene::PROXY})
+            {
+                _scene->setEngineCulling(culling);
+                _scene->setEngineTerrain(nullptr);
+                EXPECT_TRUE(same(*draw(), *expected));
+                EXPECT_GT(_engine->viewPoint.z(), 1000.0 + eye.z());
+                EXPECT_GT(above->viewPoint.z(), 1000.0 + eye.z());
+                EXPECT_GT(beside->viewPoint.z(), 1000.0 + eye.z());
+                _scene->setEngineTerrain(_engine);
+                EXPECT_TRUE(same(*draw(), *expected));
+                EXPECT_GT(_engine->viewPoint.z(), 1000.0 + eye.z());
+                EXPECT_LT((above->viewPoint - eye).length(), 0.1);
+                EXPECT_LT((beside->viewPoint - eye).length(), 0.1);
+            }
+        }
+        _scene->removeEffect(effect);
+    }
 }
 
 TEST_F(EngineCulling, ClampCallbacksCutNothingOff)

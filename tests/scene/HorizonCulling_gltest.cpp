@@ -2,13 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Tiles of a whole Earth that know their horizon, in plain OSG and below effects: the picture is that without culling, bit for
-// bit, also where a bend lifts what lies beyond the horizon.
+// bit, also where an effect lifts what lies beyond the horizon.
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <tools/CullHarness.h>
+#include <tools/DrawnDepths.h>
 #include <tools/GlFixture.h>
 #include <tools/ImageComparison.h>
 #include <tools/OahuScene.h>
@@ -22,6 +23,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iostream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -95,25 +98,31 @@ TEST_F(HorizonCulling, PicturesOfAWholeEarthAreThoseWithoutIt)
             scene.addEffect(exaggeration);
         },
         [](EffectScene& scene, Random&) { scene.addEffect(new BirdsEyeView); },
-        [](EffectScene& scene, Random&)
+        [](EffectScene& scene, Random&) { scene.addEffect(new PedestrianView); },
+        [](EffectScene& scene, Random& random)
         {
-            scene.addEffect(new PedestrianView);
+            osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
+            exaggeration->setFactor(random.logarithmic(0.02, 10.0));
+            exaggeration->setBaseHeight(random.uniform(-5000.0, 5000.0));
+            scene.addEffect(exaggeration);
+            scene.addEffect(new BirdsEyeView);
         }};
+    constexpr std::size_t count = std::size(kinds);
     CullHarness harness(context(), oahu->effects, WIDTH, HEIGHT);
     harness.camera().setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
     const osg::CullSettings::CullingMode usual = harness.camera().getCullingMode();
-    std::size_t without = 0, with = 0;
-    for (int i = 0; i < (fullTest() ? 300 : 24); ++i)
+    std::size_t without[count] = {}, with[count] = {};
+    for (std::size_t i = 0; i < (fullTest() ? 400 : 30); ++i)
     {
         SCOPED_TRACE(i);
-        Random random(static_cast<std::uint64_t>(i));
+        Random random(i);
         EffectScene& scene = *oahu->effects;
         while (scene.getNumEffects() > 0)
             scene.removeEffect(scene.getEffect(0));
-        kinds[i % 4](scene, random);
+        kinds[i % count](scene, random);
         const osg::Matrixd view = randomView(random);
         // An orthographic picture of the whole Earth, too: there the eye is nowhere.
-        const bool flat = i % 8 == 4;
+        const bool flat = i % 8 == 5;
         const osg::Matrixd projection =
             flat ? osg::Matrixd::ortho(-8e6, 8e6, -6e6, 6e6, -1e8, 1e8) : perspective(random, view);
         harness.setCamera(view, projection);
@@ -129,16 +138,22 @@ TEST_F(HorizonCulling, PicturesOfAWholeEarthAreThoseWithoutIt)
         harness.camera().setCullingMode(mode & ~osg::CullSettings::CLUSTER_CULLING);
         const Culled both = harness.frame(true, false);
         harness.camera().setCullingMode(mode);
-        if (flat || !scene.deformation(view, projection)->empty())
+        if (flat)
         {
             EXPECT_EQ(culled.leaves.size(), both.leaves.size());
             continue;
         }
-        with += culled.leaves.size();
-        without += both.leaves.size();
+        with[i % count] += culled.leaves.size();
+        without[i % count] += both.leaves.size();
     }
-    EXPECT_LT(with, without) << "nothing was left out beyond the horizon";
-    std::cout << "drawables that stay where they are: " << with << " in the place of " << without << "\n";
+    for (std::size_t kind = 0; kind < count; ++kind)
+    {
+        // The far map of a pedestrian's view is seen from so high above that little of it is below a horizon.
+        EXPECT_LT(with[kind], (kind == 3 ? 1.0 : 0.9) * static_cast<double>(without[kind]))
+            << "kind " << kind << " knows no horizon";
+        std::cout << "kind " << kind << ": " << with[kind] << " drawables in the place of " << without[kind]
+                  << "\n";
+    }
 }
 
 // Tiles on the far side of the Earth lie where no projection has a place for them.
@@ -194,6 +209,85 @@ TEST_F(HorizonCulling, NearAndFarAreNumbersUnderAnyEffect)
             }
         }
     }
+}
+
+// Whichever way OSG finds them. A near plane that lies too far away cuts a hole into the foreground.
+TEST_F(HorizonCulling, NearAndFarAreThoseOfWhatIsDrawn)
+{
+    const std::optional<Scene> oahu = loadOahu("oahu_globe");
+    if (!oahu) return;
+    EffectScene& scene = *oahu->effects;
+    CullHarness harness(context(), oahu->effects, WIDTH, HEIGHT);
+    const auto exaggeration = [](double factor)
+    {
+        osg::ref_ptr<VerticalExaggeration> made = new VerticalExaggeration;
+        made->setFactor(factor);
+        return made;
+    };
+    const osg::ref_ptr<Effect> effects[] = {exaggeration(1.0005), exaggeration(2.0), new BirdsEyeView,
+                                            new PedestrianView, new PanoramaMap};
+    const osg::ref_ptr<osg::EllipsoidModel> earth = new osg::EllipsoidModel;
+    int looked = 0;
+    for (std::size_t i = 0; i < (fullTest() ? 300 : 20); ++i)
+    {
+        Random random(i);
+        const osg::ref_ptr<Effect>& effect = effects[i % std::size(effects)];
+        while (scene.getNumEffects() > 0)
+            scene.removeEffect(scene.getEffect(0));
+        scene.addEffect(effect);
+        const double height = 5000.0 + random.logarithmic(60.0, 2e7);
+        const double pitch = random.uniform(-90.0, -5.0);
+        // Most of them near the island, where there are fine tiles.
+        const bool isNear = i % 2 == 0;
+        const double latitude = isNear ? 21.4 + random.uniform(-1.0, 1.0) : random.uniform(-89.9, 89.9);
+        const double longitude = isNear ? -158.0 + random.uniform(-1.0, 1.0) : random.uniform(-180.0, 180.0);
+        osg::Matrixd place;
+        earth->computeLocalToWorldTransformFromLatLongHeight(osg::DegreesToRadians(latitude),
+                                                             osg::DegreesToRadians(longitude), height, place);
+        const osg::Matrixd view =
+            osg::Matrixd::inverse(osg::Matrixd::rotate(osg::DegreesToRadians(90.0 + pitch), osg::X_AXIS) *
+                                  osg::Matrixd::rotate(random.uniform(-3.0, 3.0), osg::Z_AXIS) * place);
+        const osg::Matrixd projection =
+            osg::Matrixd::perspective(40.0, static_cast<double>(WIDTH) / HEIGHT, 1.0, 1e8);
+        harness.setCamera(view, projection);
+        for (int step = 0; step < 3; ++step)
+            CullHarness::load(harness.frame(true, false).requests, random, 1.0);
+        const bool isPanorama = dynamic_cast<const PanoramaMap*>(effect.get()) != nullptr;
+        DepthSpan exact;
+        for (const auto mode : {osg::CullSettings::COMPUTE_NEAR_FAR_USING_PRIMITIVES,
+                                osg::CullSettings::COMPUTE_NEAR_USING_PRIMITIVES,
+                                osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES})
+        {
+            SCOPED_TRACE(std::to_string(i) + " " + effect->className() + ", mode " + std::to_string(mode) +
+                         ", " + std::to_string(height) + " m, pitch " + std::to_string(pitch));
+            harness.camera().setComputeNearFarMode(mode);
+            harness.setCamera(view, projection);
+            const Culled culled = harness.frame(true, false);
+            const DepthsOf actual(culled);
+            DepthSpan drawn;
+            const osg::ref_ptr<const DeformationChain> chain = scene.deformation(view, projection);
+            for (const Culled::Leaf& leaf : culled.leaves)
+                include(drawn, *leaf.drawable, leaf.modelView, projection, *chain);
+            if (drawn.farthest < drawn.nearest) continue;
+            ++looked;
+            // A panorama map ends before the far side of the Earth, whose triangles are anywhere. Its fragments are not drawn.
+            if (isPanorama)
+            {
+                if (mode == osg::CullSettings::COMPUTE_NEAR_FAR_USING_PRIMITIVES)
+                    exact = {actual.nearest, actual.farthest};
+                drawn = exact;
+            }
+            // OSG puts the planes 2 % nearer and farther, and the near plane nowhere nearer than a share of the far one.
+            constexpr double room = 1.2 * 1.02;
+            EXPECT_GE(actual.farthest, 0.999 * drawn.farthest);
+            EXPECT_LE(actual.farthest, room * drawn.farthest);
+            const double bound = harness.camera().getNearFarRatio() * actual.farthest;
+            EXPECT_GE(actual.nearest, std::max(drawn.nearest / room, 0.96 * bound));
+            EXPECT_LE(actual.nearest, std::max(drawn.nearest, bound));
+        }
+        harness.camera().setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    }
+    EXPECT_GT(looked, 40);
 }
 
 TEST_F(HorizonCulling, PicturesOfPlainOsgAreThoseWithoutIt)

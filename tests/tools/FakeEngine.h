@@ -35,12 +35,13 @@ public:
         }
     }
 
-    bool culls = true;   ///< false: it draws all tiles
-    bool horizon = true; ///< whether its planet is so small that it leaves out what is beyond the horizon
-    bool asks = false;   ///< whether it draws coarse what the kit says is out of sight
-    int fine = 0;        ///< fine tiles in all traversals of the last frame
-    int drawn = 0;       ///< tiles in all traversals of the last frame
-    int kept = 0;        ///< those of which the visitor draws something
+    bool culls = true;    ///< false: it draws all tiles
+    bool horizon = true;  ///< whether its planet is so small that it leaves out what is beyond the horizon
+    bool asks = false;    ///< whether it draws coarse what the kit says is out of sight
+    int fine = 0;         ///< fine tiles in all traversals of the last frame
+    int drawn = 0;        ///< tiles in all traversals of the last frame
+    osg::Vec3d viewPoint; ///< of the last traversal
+    int kept = 0;         ///< those of which the visitor draws something
 
     void traverse(osg::NodeVisitor& visitor) override
     {
@@ -57,6 +58,7 @@ public:
         stack.pushModelViewMatrix(new osg::RefMatrix(*cull->getModelViewMatrix()),
                                   osg::Transform::ABSOLUTE_RF);
         const osg::Vec3d eye = cull->getViewPointLocal();
+        viewPoint = eye;
         if (const unsigned int frame = cull->getFrameStamp()->getFrameNumber(); frame != _frame)
         {
             _frame = frame;

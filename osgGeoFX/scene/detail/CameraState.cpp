@@ -134,14 +134,17 @@ void CameraState::setBright(bool on)
     setDefine(*_set, "GEOFX_HDR", on);
 }
 
-void CameraState::setHorizonClipping(bool on)
+void CameraState::setHorizonPlane(const osg::Vec4d* plane)
 {
-    constexpr const char* plane = "oe_ClipPlane_plane";
-    if (on)
-        _set->removeUniform(plane);
-    else if (!_set->getUniform(plane))
-        _set->addUniform(new osg::Uniform(plane, osg::Vec4f(0.0f, 0.0f, 0.0f, 1.0f)),
-                         osg::StateAttribute::OVERRIDE);
+    constexpr const char* name = "oe_ClipPlane_plane";
+    if (!plane)
+    {
+        _set->removeUniform(name);
+        return;
+    }
+    osg::Uniform* uniform = _set->getOrCreateUniform(name, osg::Uniform::FLOAT_VEC4);
+    uniform->set(osg::Vec4f(*plane));
+    _set->addUniform(uniform, osg::StateAttribute::OVERRIDE);
 }
 
 void CameraState::fill(const CameraSnapshots& snapshots, const ViewGeometry& view, const CameraDepth& depth,

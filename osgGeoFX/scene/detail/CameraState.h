@@ -69,8 +69,8 @@ public:
               int mapUnit);
     /// Whether colors above 1 stay what they are.
     void setBright(bool on);
-    /// Whether osgEarth may clip at its horizon.
-    void setHorizonClipping(bool on);
+    /// The plane at which osgEarth clips, in the world; null: its own one.
+    void setHorizonPlane(const osg::Vec4d* plane);
     /// Of the effects that color surfaces; whether there are any at work.
     bool fillSurfaces(const EffectProgram::Effects& effects, const EffectsAtWork& work,
                       const ViewGeometry& geometry, osgUtil::CullVisitor& outer);

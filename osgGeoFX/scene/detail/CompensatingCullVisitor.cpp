@@ -63,23 +63,32 @@ CompensatingCullVisitor::Lens::Lens(CompensatingCullVisitor& visitor, const osg:
     : _visitor(visitor)
 {
     // What is not moved is culled by the picture itself.
-    const bool engine = !comesWithOsg(&node) && visitor._mode.ours && !visitor._mode.chain->empty();
-    if (engine == visitor._proxied) return;
-    _changes = true;
+    const bool moved = !visitor._mode.chain->empty() || !visitor.cullsByPicture();
+    const bool engine = !comesWithOsg(&node) && visitor._mode.ours && moved;
+    _proxies = visitor._task.proxy && engine != visitor._proxied;
+    _raises = visitor._task.open && visitor._mode.ours && &node == visitor._task.engineTerrain;
+    if (!_proxies && !_raises) return;
     _formerMode = visitor.getCullingMode();
-    visitor._proxied = engine;
-    visitor.pushProjectionWithFrusta(engine ? visitor._proxy.get() : visitor._projection.get());
-    visitor.getProjectionCullingStack().back().setCullingMask(NO_CULLING);
+    if (_proxies)
+    {
+        visitor._proxied = engine;
+        visitor.pushProjectionWithFrusta(engine ? visitor._proxy.get() : visitor._projection.get());
+        visitor.getProjectionCullingStack().back().setCullingMask(NO_CULLING);
+    }
+    if (_raises) visitor.pushReferenceViewPoint(visitor._highPoint);
     visitor.pushModelViewMatrix(visitor.getModelViewMatrix(), osg::Transform::RELATIVE_RF);
     visitor.getCurrentCullingSet().setCullingMask(NO_CULLING);
-    visitor.setCullingMode(engine ? visitor._outerCullingMode & VIEW_FRUSTUM_CULLING : NO_CULLING);
+    if (_proxies)
+        visitor.setCullingMode(engine ? visitor._outerCullingMode & VIEW_FRUSTUM_CULLING : NO_CULLING);
 }
 
 CompensatingCullVisitor::Lens::~Lens()
 {
-    if (!_changes) return;
+    if (!_proxies && !_raises) return;
     _visitor.setCullingMode(_formerMode);
     _visitor.popModelViewMatrix();
+    if (_raises) _visitor.popReferenceViewPoint();
+    if (!_proxies) return;
     _visitor.popProjectionMatrix();
     _visitor._proxied = !_visitor._proxied;
 }
@@ -91,7 +100,7 @@ CompensatingCullVisitor::Scope::Scope(CompensatingCullVisitor& visitor, const os
     visitor.meetPushed();
     visitor.meet(node.getStateSet());
     if (visitor._task.compensate) _skip = visitor.outOfSight(node);
-    if (visitor._task.proxy && !_skip) _lens.emplace(visitor, node);
+    if (visitor._task.open && !_skip) _lens.emplace(visitor, node);
 }
 
 CompensatingCullVisitor::CompensatingCullVisitor() : _nothing(new DeformationChain) {}
@@ -163,8 +172,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _entry = _currentStateGraph;
 
     _outerCullingMode = outer.getCullingMode();
-    // A pass of parts that a filter chooses lets engines cull nothing.
-    _task.proxy = task.proxy && cullsByPicture() && (_outerCullingMode & VIEW_FRUSTUM_CULLING);
+    _task.proxy = task.proxy && task.open && (_outerCullingMode & VIEW_FRUSTUM_CULLING);
     const bool findsDepths = task.findsNearAndFar || task.ownView;
     _outerNearFar = findsDepths ? outer.getComputeNearFarMode() : DO_NOT_COMPUTE_NEAR_FAR;
     if (task.compensate)
@@ -174,7 +182,8 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     // Of this mode, engines make culling stacks of their own.
     if (task.open) setCullingMode(NO_CULLING);
     pushMatrices(outer);
-    // The horizon that tiles know (osg::ClusterCullingCallback) is that of the undeformed Earth, for the eye.
+    // The horizon that tiles know (osg::ClusterCullingCallback) is that of the undeformed Earth, for the eye. GlobeHorizon has that of
+    // the deformed one.
     if (!task.chain->empty() || !cullsByPicture()) setCullingMode(getCullingMode() & ~CLUSTER_CULLING);
 
     _mode = Mode();
@@ -192,7 +201,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
         task.tessellating                                    ? DepthRange::Meshes::No
         : _outerNearFar == COMPUTE_NEAR_FAR_USING_PRIMITIVES ? DepthRange::Meshes::NearAndFar
         : _outerNearFar == COMPUTE_NEAR_USING_PRIMITIVES     ? DepthRange::Meshes::Near
-                                                             : DepthRange::Meshes::No;
+                                                             : DepthRange::Meshes::Loosely;
     _drawables.begin({_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR, _outerCullingMode != NO_CULLING,
                       task.debugBounds, meshes});
     // The drawables of engines are as large as the terrain, and say nothing of near and far.
@@ -215,6 +224,7 @@ void CompensatingCullVisitor::pushMatrices(osgUtil::CullVisitor& outer)
             each.second.transformProvidingInverse(osg::Matrixd::inverse(own->modelView) *
                                                   *outer.getModelViewMatrix());
     setVisibility(outer);
+    setHorizon();
     // OSG's own tests, which the base class makes, pass everything.
     if (_task.compensate) getProjectionCullingStack().back().setCullingMask(NO_CULLING);
     _outerViewPoint = outer.getReferenceViewPoint();
@@ -222,10 +232,12 @@ void CompensatingCullVisitor::pushMatrices(osgUtil::CullVisitor& outer)
     osg::RefMatrix* modelView =
         _task.stage ? createOrReuseMatrix(own ? own->modelView : osg::Matrixd(*outer.getModelViewMatrix()))
                     : outer.getModelViewMatrix();
-    const osg::Vec3 proxyPoint = _task.open ? setProxy(*modelView) : osg::Vec3();
-    pushReferenceViewPoint(_task.proxy  ? proxyPoint
-                           : _task.open ? raisedViewPoint()
-                                        : outer.getReferenceViewPoint());
+    if (_task.open)
+    {
+        const osg::Vec3 ofProxy = setProxy(*modelView);
+        _highPoint = _task.proxy ? ofProxy : raisedViewPoint();
+    }
+    pushReferenceViewPoint(_task.open && !_task.engineTerrain ? _highPoint : outer.getReferenceViewPoint());
     pushModelViewMatrix(modelView, osg::Transform::RELATIVE_RF);
     if (_task.compensate) getCurrentCullingSet().setCullingMask(NO_CULLING);
 }
@@ -254,6 +266,16 @@ void CompensatingCullVisitor::setVisibility(const osgUtil::CullVisitor& outer)
     for (const DrawableCompanion* each : _task.companions)
         camera.reach = std::max(camera.reach, each->reach());
     _sight.set(camera);
+}
+
+void CompensatingCullVisitor::setHorizon()
+{
+    _horizon = GlobeHorizon();
+    const osg::Matrixd& projection = *getProjectionMatrix();
+    const bool parallel = projection(0, 3) == 0.0 && projection(1, 3) == 0.0 && projection(2, 3) == 0.0;
+    if (parallel || !_task.compensate || !cullsByPicture() || !(_outerCullingMode & CLUSTER_CULLING)) return;
+    _horizon = GlobeHorizon(*_task.chain, *_task.view,
+                            _task.image ? osg::Vec3d() * _task.image->toView : osg::Vec3d());
 }
 
 void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
@@ -365,6 +387,8 @@ bool CompensatingCullVisitor::outOfSight(const osg::Node& node)
 bool CompensatingCullVisitor::leavesOut(const osg::Node& node)
 {
     if (!_mode.ours || !_task.compensate) return false;
+    const osg::BoundingSphere& bound = node.getBound();
+    if (bound.valid() && _mode.chain == _task.chain && _horizon.hides(eyeBall(bound))) return true;
     const Mode former = _mode;
     _mode.planes = _sight.all();
     const bool out = outOfSight(node);
@@ -381,6 +405,14 @@ double CompensatingCullVisitor::pixelSize(const osg::Node& node)
     // Straight ahead, since the distance says already where in the picture it is.
     const double pixel = _sight.radiusOfPixel(osg::Vec3d(0.0, 0.0, -distance));
     return ball.radius / std::max(std::abs(pixel), 1e-30) / static_cast<double>(getLODScale());
+}
+
+std::optional<osg::Vec3d> CompensatingCullVisitor::highPoint() const
+{
+    if (!_task.open || !_mode.ours) return std::nullopt;
+    const osg::Vec3d inEyeSpace(_highPoint);
+    return (_task.image ? inEyeSpace * _task.image->toView : inEyeSpace) *
+           osg::Matrixd::inverse(_task.view->modelView);
 }
 
 bool CompensatingCullVisitor::partsInSight(const osg::Node& node, const Ball& undeformed)
@@ -590,7 +622,7 @@ void CompensatingCullVisitor::passUntouched(NodeType& node)
         return;
     }
     std::optional<Lens> lens;
-    if (_task.proxy) lens.emplace(*this, node);
+    if (_task.open) lens.emplace(*this, node);
     const Mode formerMode = _mode;
     const osg::CullSettings formerSettings(*this);
     osgUtil::StateGraph* const formerGraph = _currentStateGraph;
@@ -655,7 +687,9 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
     }
     if (!culled)
     {
-        if (_task.compensate)
+        if (isLaidOut(drawable))
+            placeInLayout(drawable);
+        else if (_task.compensate)
             place(drawable);
         else
             placeAsOsg(drawable);

@@ -7,6 +7,7 @@
 #include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/effect/ScenePass.h>
 #include <osgGeoFX/scene/detail/DrawableSight.h>
+#include <osgGeoFX/scene/detail/GlobeHorizon.h>
 #include <osgGeoFX/scene/detail/LookCache.h>
 #include <osgGeoFX/scene/detail/OwnPrograms.h>
 #include <osgGeoFX/scene/detail/PatchTwins.h>
@@ -87,11 +88,13 @@ public:
         bool adapts = false;                   ///< EffectScene::getAdaptsPrograms()
         bool engines = false;                  ///< EffectScene::OPEN or PROXY
         bool open = false;  ///< nothing else is to cull, since what engines cull by is not what is shown
-        bool proxy = false; ///< engines cull by a ProxyFrustum: EffectScene::PROXY
-        osg::BoundingSphere bound;           ///< of the terrain, for this frustum
-        GroundFinder* ground = nullptr;      ///< hears of coordinate systems that are met
-        const osg::Group* terrain = nullptr; ///< below which they are looked for
-        double tileError = 0.0;              ///< Ground::tileError
+        bool proxy = false; ///< where `open`, engines cull by a ProxyFrustum: EffectScene::PROXY
+        const std::vector<std::string>* layoutBins = nullptr; ///< EffectScene::getLayoutBins(); null for none
+        const osg::Node* engineTerrain = nullptr;             ///< EffectScene::getEngineTerrain()
+        osg::BoundingSphere bound;                            ///< of the terrain, for this frustum
+        GroundFinder* ground = nullptr;                       ///< hears of coordinate systems that are met
+        const osg::Group* terrain = nullptr;                  ///< below which they are looked for
+        double tileError = 0.0;                               ///< Ground::tileError
         std::vector<DrawableCompanion*> companions;
         bool asksForTiles = true;    ///< false: pagers hear nothing, and what is met does not count as seen
         bool findsNearAndFar = true; ///< false: the camera's stay as they are
@@ -134,6 +137,8 @@ public:
     bool leavesOut(const osg::Node& node);
     /// The size in pixels of a node's deformed bounding sphere, as tilePixelSize() has it.
     double pixelSize(const osg::Node& node);
+    /// As osgGeoFX::raisedViewPoint() has it.
+    std::optional<osg::Vec3d> highPoint() const;
 
     using osgUtil::CullVisitor::apply;
     void apply(osg::Node& node) override;
@@ -184,10 +189,16 @@ protected:
 
     /// Whether the borders of the camera's picture cull; false where something else says what is wanted.
     virtual bool cullsByPicture() const { return true; }
+    /// Whether a box of ground, undeformed, is out of sight, so that engines need not draw what is in it.
+    virtual bool boxOutOfSight(const EyeBox& box);
     /// Whether a node is out of sight; narrows the planes for what is below it.
     virtual bool outOfSight(const osg::Node& node);
     /// A node with levels of detail that is not out of sight.
     virtual void meetLevels(const osg::LOD&) {}
+    /// Whether a render bin of the host lays a drawable out in the picture (EffectScene::setLayoutBins()).
+    bool isLaidOut(const osg::Drawable& drawable) const;
+    /// A drawable that is laid out: only its place moves.
+    void placeInLayout(osg::Drawable& drawable);
     /// A drawable whose callbacks leave it to be drawn, with compensation.
     virtual void place(osg::Drawable& drawable);
     /// What a node has put into the render graph by itself. `look`, `above`: as for drawables; null for none.
@@ -247,7 +258,8 @@ private:
 
     private:
         CompensatingCullVisitor& _visitor;
-        bool _changes = false;
+        bool _proxies = false; ///< whether the projection changes from the picture's to the proxy's, or back
+        bool _raises = false;  ///< whether the view point is raised
         CullingMode _formerMode = 0;
     };
 
@@ -307,6 +319,9 @@ private:
     static std::size_t graphsIn(osgUtil::RenderBin& bin);
     bool isForeign(const osgUtil::StateGraph& graph) const;
     void setVisibility(const osgUtil::CullVisitor& outer);
+    void setHorizon();
+    /// Whether deformed ground hides a node with tiles of a whole Earth.
+    bool belowHorizon(const osg::LOD& node);
     void beginPatches(osg::Program& program, const osg::Viewport& viewport);
     void pushMatrices(osgUtil::CullVisitor& outer);
     /// Where everything is above the horizon, for those who look for the view point.
@@ -351,11 +366,13 @@ private:
 
     osg::Polytope _planes; ///< those of the camera's frustum that cull
     Visibility _sight;
+    GlobeHorizon _horizon;
     DrawableSight _drawables = DrawableSight(_sight);
     osg::ref_ptr<osg::RefMatrix> _projection,
         _proxy;                             ///< that of the picture, and the one that engines cull by
     bool _proxied = false;                  ///< whether the second one is in force
     std::pair<double, double> _proxyDepths; ///< near and far of the ground that is shown
+    osg::Vec3 _highPoint;                   ///< from which all that is shown is above the horizon
     CullingMode _outerCullingMode = 0;
     ComputeNearFarMode _outerNearFar = DO_NOT_COMPUTE_NEAR_FAR;
     bool _mayBeSmall = false; ///< what is looked at is never left out for being small

@@ -103,6 +103,48 @@ void CompensatingCullVisitor::place(osg::Drawable& drawable)
     if (shade) popStateSet();
 }
 
+bool CompensatingCullVisitor::isLaidOut(const osg::Drawable& drawable) const
+{
+    if (!_task.layoutBins) return false;
+    // Where nothing is deformed, the picture's own labels stay as they are.
+    if (!_task.inPass && (!_task.compensate || _mode.chain->empty())) return false;
+    const auto isNamed = [this](const std::string& name)
+    {
+        return std::find(_task.layoutBins->begin(), _task.layoutBins->end(), name) != _task.layoutBins->end();
+    };
+    const osg::StateSet* own = drawable.getStateSet();
+    // A bin has the name of its prototype.
+    return isNamed(_currentRenderBin->getName()) ||
+           (own && own->useRenderBinDetails() && isNamed(own->getBinName()));
+}
+
+void CompensatingCullVisitor::placeInLayout(osg::Drawable& drawable)
+{
+    // A pass draws parts of the ground, not of the picture.
+    if (_task.inPass) return;
+    const osg::Vec3d place = inView(osg::Vec3d());
+    if (_mode.chain->isBeyond(place) || _horizon.hidesPlace(place)) return;
+    osg::Matrixd placement = rigidPlacement(*_mode.chain, place, false);
+    const osg::Vec3d deformed = place * placement;
+    const osg::BoundingBox& bounds = drawable.getBoundingBox();
+    const double radius =
+        bounds.valid() ? _scale * static_cast<double>(bounds.center().length() + bounds.radius()) : 0.0;
+    const Ball ball = {deformed, radius};
+    Visibility::Mask planes = _sight.all();
+    if (drawable.isCullingActive() && _sight.outOfSight(ball, planes, true)) return;
+    if (_task.image) placement = _task.image->toView * placement * _task.image->toEye;
+    const Mode former = _mode;
+    meet(_task.untouched);
+    pushStateSet(_task.untouched);
+    osg::StateSet* const own = ownState(drawable);
+    if (own) pushStateSet(own);
+    addLeaf(drawable, createOrReuseMatrix(*getModelViewMatrix() * placement),
+            _drawables.depths().depthOf(deformed));
+    if (own) popStateSet();
+    popStateSet();
+    _mode = former;
+}
+
 void CompensatingCullVisitor::noteStranger()
 {
     // Where nothing is to be moved it is at home.

@@ -71,7 +71,7 @@ void CompensatingCullVisitor::applyTile(osg::Transform& node)
             return;
         }
     }
-    _mode.tile = node.getNumChildren() == 1;
+    _mode.tile = node.isCullingActive() && node.getNumChildren() == 1;
     if (state) pushStateSet(state);
     osg::RefMatrix* matrix = createOrReuseMatrix(*getModelViewMatrix());
     node.computeLocalToWorldMatrix(*matrix, this);
@@ -135,6 +135,7 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
         CullVisitor::apply(node);
         return;
     }
+    if (belowHorizon(node)) return;
     meetLevels(node);
     // The mesh and its box lie elsewhere in memory; where the middle shows they have nothing to tell.
     if (_mode.planes && !_sight.holds(_middle, _mode.planes) &&
@@ -160,6 +161,14 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
     }
     applyLevels(node);
     setLODScale(former);
+}
+
+bool CompensatingCullVisitor::belowHorizon(const osg::LOD& node)
+{
+    if (!_horizon || _mode.chain != _task.chain) return false;
+    const auto* callback = dynamic_cast<const osg::ClusterCullingCallback*>(node.getCullCallback());
+    return callback && _horizon.hides(*callback, viewMatrix(), eyeBall(node.getBound())) &&
+           !_undeformedParts.below(node, _programs, _frame);
 }
 
 void CompensatingCullVisitor::applyLevels(osg::LOD& node)
@@ -200,6 +209,11 @@ osg::Vec3 CompensatingCullVisitor::raisedViewPoint() const
     return osg::Vec3((_task.image ? osg::Matrixd::transform3x3(up, _task.image->toEye) : up) * high);
 }
 
+bool CompensatingCullVisitor::boxOutOfSight(const EyeBox& box)
+{
+    return _horizon.hides(box.ball()) || _sight.outOfSight(*_task.chain, box, _sight.all());
+}
+
 osg::Vec3 CompensatingCullVisitor::setProxy(const osg::Matrixd& modelView)
 {
     const ViewGeometry& view = *_task.view;
@@ -207,7 +221,7 @@ osg::Vec3 CompensatingCullVisitor::setProxy(const osg::Matrixd& modelView)
     const ProxyFrustum::Terrain terrain = {
         _task.bound, modelView, _task.image ? _task.image->toView : osg::Matrixd(), up, view.ground};
     const ProxyFrustum proxy(
-        terrain, [this](const EyeBox& box) { return _sight.outOfSight(*_task.chain, box, _sight.all()); },
+        terrain, [this](const EyeBox& box) { return boxOutOfSight(box); },
         [this](const EyeBox& box)
         {
             const Ball ball = _task.chain->bound(box.ball());

@@ -58,6 +58,9 @@ constexpr double coarse = 0.1;
 /// Metres; 15 Earths. Bounds that are wider say nothing.
 constexpr double BOUNDLESS = 2e8;
 
+/// By how much boxes may widen the range of depths before triangles are looked at: a factor.
+constexpr double LOOSENESS = 1.1;
+
 } // namespace
 
 void EyeFrustum::set(const osg::Polytope* planes, const osg::Matrixd& projection, bool sides)
@@ -187,7 +190,9 @@ void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationC
     if (!std::isfinite(depth) || !std::isfinite(deformed.radius)) return;
     if (_meshes != Meshes::No && mesh.drawable)
     {
-        // Nothing of it is certain.
+        // Nothing of it is certain, but that a box whose middle shows is about that far away.
+        if (_meshes == Meshes::Loosely && _frustum && _frustum->holds(deformed.center, _frustum->all()))
+            include(depth, depth);
         if (!covers(deformed))
             _candidates.push_back(
                 {box, &chain, depth - deformed.radius, depth + deformed.radius, margin, mesh});
@@ -242,10 +247,6 @@ void DepthRange::measure(Candidate& candidate)
             candidate.ofBox = true;
             candidate.nearest = std::max(candidate.nearest, nearest);
             candidate.farthest = std::min(candidate.farthest, farthest);
-            if (_meshes == Meshes::NearAndFar) return;
-            if (!isBounded) candidate.farthest = measureMesh() ? farthest : -DBL_MAX;
-            if (candidate.farthest >= 0.0) _farthest = std::max(_farthest, candidate.farthest);
-            candidate.farthest = -DBL_MAX;
             return;
         }
         isKnown = isBounded || measureMesh();
@@ -253,7 +254,6 @@ void DepthRange::measure(Candidate& candidate)
     else
     {
         isKnown = measureMesh() || nearest > -BOUNDLESS;
-        if (_meshes == Meshes::Near && nearest < DBL_MAX) farthest = nearest;
     }
     if (isKnown && nearest <= farthest) include(nearest, farthest);
     // The candidate is done.
@@ -276,12 +276,24 @@ void DepthRange::settle()
     {
         Candidate& first = *std::min_element(_candidates.begin(), _candidates.end(), nearer);
         if (first.nearest >= _nearest) break;
+        if (_meshes == Meshes::Loosely && first.ofBox && first.nearest > 0.0 &&
+            LOOSENESS * first.nearest >= _nearest)
+        {
+            _nearest = first.nearest;
+            break;
+        }
         measure(first);
     }
+    const bool isLoose = _meshes == Meshes::Loosely || _meshes == Meshes::Near;
     while (!_candidates.empty())
     {
         Candidate& last = *std::max_element(_candidates.begin(), _candidates.end(), farther);
         if (last.farthest <= _farthest) break;
+        if (isLoose && last.ofBox && last.farthest <= LOOSENESS * _farthest)
+        {
+            _farthest = last.farthest;
+            break;
+        }
         measure(last);
     }
     _candidates.clear();

@@ -57,10 +57,12 @@ private:
 class DepthRange
 {
 public:
-    /// Which of the two ends go by triangles; else both go by boxes.
+    /// Which of the two ends go by triangles. An end that goes by boxes goes by triangles, too, where boxes would widen the range by
+    /// more than a tenth.
     enum class Meshes
     {
-        No,
+        No,      ///< neither, however wide
+        Loosely, ///< both go by boxes
         Near,
         NearAndFar
     };

@@ -27,6 +27,11 @@ bool PassCullVisitor::outOfSight(const osg::Node& node)
     return _filter->outside(ball);
 }
 
+bool PassCullVisitor::boxOutOfSight(const EyeBox& box)
+{
+    return _filter->outside(box.ball());
+}
+
 osg::Matrixd PassCullVisitor::standing(const osg::Matrixd& modelView) const
 {
     return _mode.unplaced ? modelView * *_mode.unplaced : modelView;

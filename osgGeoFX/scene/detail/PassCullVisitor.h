@@ -24,6 +24,7 @@ protected:
     ~PassCullVisitor() override;
 
     bool cullsByPicture() const override { return false; }
+    bool boxOutOfSight(const EyeBox& box) override;
     bool outOfSight(const osg::Node& node) override;
     void meetLevels(const osg::LOD& node) override;
     void place(osg::Drawable& drawable) override;

@@ -11,6 +11,7 @@
 #include <osgGeoFX/scene/detail/AdaptedPrograms.h>
 #include <osgGeoFX/scene/detail/CameraRoles.h>
 #include <osgGeoFX/scene/detail/DividedTriangles.h>
+#include <osgGeoFX/scene/detail/GlobeHorizon.h>
 #include <osgGeoFX/scene/detail/GpuLimits.h>
 #include <osgGeoFX/scene/detail/NearestFirst.h>
 #include <osgGeoFX/scene/detail/TargetFormat.h>
@@ -136,6 +137,8 @@ private:
                    bool surfaces) const;
     /// Whether something that was drawn has the map that an effect shows.
     void lookForMap(const CompensatingCullVisitor& visitor, const Task& task) const;
+    /// Where engines cull by what the deformed picture shows, osgEarth clips by it, too.
+    void setHorizonPlane(CameraState& state, const Task& task) const;
 
     SceneDrawing& _drawing;
     EffectScene& _scene;
@@ -363,7 +366,9 @@ SceneDrawing::Traversal::taskOf(const osg::ref_ptr<const DeformationChain>& chai
     task.tileError = _view.ground.tileError;
     task.engines = _scene.getEngineCulling() != EffectScene::AS_IT_IS && _scene.getCompensation();
     task.open = task.engines && !chain->empty();
-    task.proxy = task.open && _scene.getEngineCulling() == EffectScene::PROXY;
+    task.proxy = task.engines && _scene.getEngineCulling() == EffectScene::PROXY;
+    if (!_scene.getLayoutBins().empty()) task.layoutBins = &_scene.getLayoutBins();
+    task.engineTerrain = _scene.getEngineTerrain();
     task.bound = _bound;
     task.ground = &_drawing.ground;
     task.terrain = &_top;
@@ -437,6 +442,25 @@ void SceneDrawing::Traversal::lookForMap(const CompensatingCullVisitor& visitor,
                                             "the unit that has it.");
 }
 
+void SceneDrawing::Traversal::setHorizonPlane(CameraState& state, const Task& task) const
+{
+    if (!task.open)
+    {
+        state.setHorizonPlane(nullptr);
+        return;
+    }
+    const osg::Vec3d eye = task.image ? osg::Vec3d() * task.image->toView : osg::Vec3d();
+    const std::optional<osg::Vec4d> plane = GlobeHorizon(*task.chain, _view, eye).plane();
+    // Clips nothing.
+    osg::Vec4d inWorld(0.0, 0.0, 0.0, 1.0);
+    if (plane)
+    {
+        const osg::Matrixd& toEye = _outer.getCurrentCamera()->getViewMatrix();
+        inWorld = (task.image ? toEye * task.image->toView : toEye) * *plane;
+    }
+    state.setHorizonPlane(&inWorld);
+}
+
 bool SceneDrawing::Traversal::run()
 {
     _drawing.sayOnce(_work.sentence());
@@ -447,10 +471,10 @@ bool SceneDrawing::Traversal::run()
     CameraState& state = own.nextState(_effects, mapUnit, _units);
     state.fill(snapshots, _view, _depth, mapUnit);
     state.setBright(holdsBrightColors(targetFormat(_outer)));
-    state.setHorizonClipping(_scene.getEngineCulling() == EffectScene::AS_IT_IS);
     const bool surfaces = state.fillSurfaces(_effects, _work, _view, _outer);
 
     const Task task = taskOf(snapshots.chain(_view.ground), mapUnit);
+    setHorizonPlane(state, task);
     // What has no shader writes no logarithmic depth by itself.
     const bool draws = surfaces || _scene.getDebugBounds() || !task.chain->empty() || _depth.logarithmic();
     const bool culls = draws || task.compensate;
