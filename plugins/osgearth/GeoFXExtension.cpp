@@ -16,15 +16,19 @@
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
 #include <osgEarth/Extension>
+#include <osgEarth/Horizon>
 #include <osgEarth/MapNode>
 #include <osgEarth/NodeUtils>
+#include <osgEarth/ScreenSpaceLayout>
 #include <osgEarth/TerrainEngineNode>
 #include <osgEarth/URI>
+#include <osgEarth/Utils>
 
 #include <osgUtil/CullVisitor>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +36,27 @@ namespace osgGeoFX
 {
 
 // osgEarth's interfaces have no virtual destructors; nobody deletes by them.
+/// Raises the eye of the horizon by which osgEarth culls annotations and features, of the map's layers. The scene itself leaves out labels that the deformed globe hides.
+class HorizonRaiser : public osg::NodeCallback
+{
+public:
+    void operator()(osg::Node* node, osg::NodeVisitor* visitor) override
+    {
+        osg::ref_ptr<osgEarth::Horizon> horizon;
+        const std::optional<osg::Vec3d> viewPoint = raisedViewPoint(*visitor);
+        if (!viewPoint || !osgEarth::ObjectStorage::get(visitor, horizon))
+        {
+            traverse(node, visitor);
+            return;
+        }
+        const osg::Vec3d eye = horizon->getEye();
+        horizon->setEye(*viewPoint, nullptr);
+        traverse(node, visitor);
+        // Draping goes by the eye.
+        horizon->setEye(eye, nullptr);
+    }
+};
+
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wnon-virtual-dtor"
 
@@ -68,14 +93,24 @@ public:
             return false;
         }
         if (!takeUnits(*map, error)) OSG_WARN << "osgGeoFX: " << error << std::endl;
+        // A plane as large as the Earth might be taken for one.
+        if (!map->isGeocentric() && _scene->getTerrainFrame() == EffectScene::AUTOMATIC)
+            _scene->setTerrainFrame(EffectScene::PROJECTED);
         refineWhatIsSeen(*map, *_scene);
         _scene->setShaderHost(new VirtualProgramHost);
         _scene->setEngineCulling(read.scene->engine->culling);
+        _scene->setLayoutBins({OSGEARTH_SCREEN_SPACE_LAYOUT_BIN});
+        if (osgEarth::TerrainEngine* engine = map->getTerrainEngine())
+            _scene->setEngineTerrain(engine->getNode());
+        _raiser = new HorizonRaiser;
+        map->getLayerNodeGroup()->addCullCallback(_raiser);
         return true;
     }
 
-    bool disconnect(osgEarth::MapNode*) override
+    bool disconnect(osgEarth::MapNode* map) override
     {
+        if (map && _raiser) map->getLayerNodeGroup()->removeCullCallback(_raiser);
+        _raiser = nullptr;
         if (!_scene) return false;
         osgEarth::removeGroup(_scene.get());
         _scene = nullptr;
@@ -190,6 +225,7 @@ private:
     osgEarth::ConfigOptions _config;
     osg::ref_ptr<const osgDB::Options> _options;
     osg::ref_ptr<EffectScene> _scene;
+    osg::ref_ptr<HorizonRaiser> _raiser;
     HostUnits _units;
 };
 #pragma GCC diagnostic pop

@@ -11,15 +11,18 @@
 #include <osg/Math>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
+#include <osgEarth/Extension>
 #include <osgEarth/GLUtils>
 #include <osgEarth/GeoData>
 #include <osgEarth/Registry>
+#include <osgEarth/XmlUtils>
 #include <osgEarth/weejobs.h>
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 namespace geofx::test
@@ -176,7 +179,18 @@ bool EarthMaps::show(const std::string& geofx, const std::string& terrainOptions
                          << "<GDALImage name=\"picture\"><url>picture.tif</url></GDALImage>\n"
                          << "<GDALElevation name=\"hills\"><url>hills.tif</url></GDALElevation>\n"
                          << geofx << "\n</map>\n";
-    const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(_file);
+    return showMap(_file);
+}
+
+bool EarthMaps::showFile(const std::string& file)
+{
+    _file = file;
+    return showMap(file);
+}
+
+bool EarthMaps::showMap(const std::string& file)
+{
+    const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file);
     _map = osgEarth::MapNode::get(node.get());
     if (!_map)
     {
@@ -194,6 +208,19 @@ bool EarthMaps::show(const std::string& geofx, const std::string& terrainOptions
     return true;
 }
 
+bool EarthMaps::addExtension(const std::string& geofx)
+{
+    std::istringstream text(geofx);
+    const osg::ref_ptr<osgEarth::XmlDocument> document = osgEarth::XmlDocument::load(text);
+    if (!document) ADD_FAILURE() << "no XML";
+    if (!document) return false;
+    const osgEarth::ConfigOptions options(document->getConfig().child("geofx"));
+    const osg::ref_ptr<osgEarth::Extension> extension = osgEarth::Extension::create("geofx", options);
+    if (extension) _map->addExtension(extension);
+    if (!scene()) ADD_FAILURE() << "no scene";
+    return scene() != nullptr;
+}
+
 void EarthMaps::setProjection(double near, double far)
 {
     _projection.makePerspective(40.0, static_cast<double>(WIDTH) / HEIGHT, near, far);
@@ -206,8 +233,8 @@ osgGeoFX::EffectScene* EarthMaps::scene()
     return finder.found;
 }
 
-osg::ref_ptr<osg::Image> EarthMaps::draw(double longitude, double latitude, double height, double heading,
-                                         double pitch)
+osg::Matrixd EarthMaps::viewFrom(double longitude, double latitude, double height, double heading,
+                                 double pitch)
 {
     osg::Matrixd ground;
     const osgEarth::GeoPoint place(osgEarth::SpatialReference::get("wgs84"), longitude, latitude, height);
@@ -215,7 +242,18 @@ osg::ref_ptr<osg::Image> EarthMaps::draw(double longitude, double latitude, doub
     const osg::Matrixd turn =
         osg::Matrixd::rotate(osg::DegreesToRadians(90.0 + pitch), osg::Vec3d(1.0, 0.0, 0.0)) *
         osg::Matrixd::rotate(-osg::DegreesToRadians(heading), osg::Vec3d(0.0, 0.0, 1.0));
-    camera().setViewMatrix(osg::Matrixd::inverse(turn * ground));
+    return osg::Matrixd::inverse(turn * ground);
+}
+
+osg::ref_ptr<osg::Image> EarthMaps::draw(double longitude, double latitude, double height, double heading,
+                                         double pitch)
+{
+    return draw(viewFrom(longitude, latitude, height, heading, pitch));
+}
+
+osg::ref_ptr<osg::Image> EarthMaps::draw(const osg::Matrixd& view)
+{
+    camera().setViewMatrix(view);
     // Tiles are loaded, then merged, then drawn.
     constexpr int still = 10, most = 2000;
     for (int i = 0, quiet = 0; i < most && quiet < still; ++i)
@@ -226,6 +264,12 @@ osg::ref_ptr<osg::Image> EarthMaps::draw(double longitude, double latitude, doub
         const bool busy = jobs::get_metrics()->total() > 0;
         quiet = busy ? 0 : quiet + 1;
         if (busy) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    if (fading > 0)
+    {
+        std::this_thread::sleep_for(std::chrono::milliseconds(fading));
+        camera().setProjectionMatrix(_projection);
+        _viewer->frame();
     }
     const osg::ref_ptr<Capture> capture = new Capture;
     camera().setFinalDrawCallback(capture);

@@ -32,11 +32,19 @@ protected:
     void setProfile(const std::string& name) { _profile = name; }
     /// Writes an .earth file with an extension's element, and shows it. False, after a failure, if it cannot be read.
     bool show(const std::string& geofx, const std::string& terrainOptions = "skirt_ratio=\"0.05\"");
+    /// Shows a map that is not ours, without an extension. False, after a failure, if it cannot be read.
+    bool showFile(const std::string& file);
+    /// Adds an extension with this element to the map that is shown. False, after a failure, if there is no scene then.
+    bool addExtension(const std::string& geofx);
     /// What scene files have in <effects>, as an extension.
     static std::string extension(const std::string& effects, const std::string& culling = "proxy");
     /// A picture from a place, degrees and metres, when all tiles have come.
     osg::ref_ptr<osg::Image> draw(double longitude, double latitude, double height, double heading,
                                   double pitch);
+    /// From a view matrix.
+    osg::ref_ptr<osg::Image> draw(const osg::Matrixd& view);
+    /// The view matrix of a camera at a place, degrees and metres.
+    osg::Matrixd viewFrom(double longitude, double latitude, double height, double heading, double pitch);
     /// Pixels that differ.
     static int differing(const osg::Image& a, const osg::Image& b);
 
@@ -49,8 +57,12 @@ protected:
     /// The projection that each picture begins with.
     void setProjection(double near, double far);
 
+    /// How long labels take to fade in, milliseconds.
+    int fading = 0;
+
 private:
     bool startViewer();
+    bool showMap(const std::string& file);
 
     std::unique_ptr<TempDir> _folder;
     std::string _file, _profile;
