@@ -136,6 +136,26 @@ protected:
         return _scene->deformation(view, projection);
     }
 
+    /// Puts the labels onto a globe. False where its heights are refused.
+    bool makeGlobe()
+    {
+        osg::ref_ptr<osg::CoordinateSystemNode> earth = new osg::CoordinateSystemNode;
+        earth->setEllipsoidModel(_ellipsoid);
+        earth->addChild(_labels);
+        _scene->addChild(earth);
+        EffectScene::GroundDescription heights;
+        heights.minHeight = -1000.0;
+        heights.maxHeight = 9000.0;
+        return _scene->setGround(heights);
+    }
+    osg::Vec3d placeAt(double latitude, double longitude, double height) const
+    {
+        osg::Vec3d place;
+        _ellipsoid->convertLatLongHeightToXYZ(latitude, longitude, height, place.x(), place.y(), place.z());
+        return place;
+    }
+
+    const osg::ref_ptr<osg::EllipsoidModel> _ellipsoid = new osg::EllipsoidModel;
     osg::ref_ptr<EffectScene> _scene = new EffectScene;
     osg::ref_ptr<osg::Group> _labels = new osg::Group;
     std::vector<Label> _all;
@@ -273,27 +293,13 @@ TEST_F(LaidOutThings, KeepTheirShapeAndColor)
 // They are drawn without a depth test, so nothing else hides what is on the far side of the Earth.
 TEST_F(LaidOutThings, BehindTheGlobeAreNotDrawn)
 {
-    osg::ref_ptr<osg::CoordinateSystemNode> earth = new osg::CoordinateSystemNode;
-    const osg::ref_ptr<osg::EllipsoidModel> ellipsoid = new osg::EllipsoidModel;
-    earth->setEllipsoidModel(ellipsoid);
-    earth->addChild(_labels);
-    _scene->addChild(earth);
-    EffectScene::GroundDescription heights;
-    heights.minHeight = -1000.0;
-    heights.maxHeight = 9000.0;
-    ASSERT_TRUE(_scene->setGround(heights));
+    ASSERT_TRUE(makeGlobe());
     Random random(6);
-    const auto placeAt = [&](double latitude, double longitude, double height)
-    {
-        osg::Vec3d place;
-        ellipsoid->convertLatLongHeightToXYZ(latitude, longitude, height, place.x(), place.y(), place.z());
-        return place;
-    };
     for (int i = 0; i < (fullTest() ? 1500 : 300); ++i)
         add(placeAt(std::asin(random.uniform(-1.0, 1.0)), random.uniform(-osg::PI, osg::PI),
                     random.uniform(0.0, 9000.0)));
     CullHarness harness(context(), _scene, WIDTH, HEIGHT);
-    const double equator = ellipsoid->getRadiusEquator(), polar = ellipsoid->getRadiusPolar();
+    const double equator = _ellipsoid->getRadiusEquator(), polar = _ellipsoid->getRadiusPolar();
     for (const double factor : {1.0005, 2.0, 30.0, 0.1})
     {
         SCOPED_TRACE(factor);
@@ -334,54 +340,63 @@ TEST_F(LaidOutThings, BehindTheGlobeAreNotDrawn)
     }
 }
 
-// A bend may lift ground into sight that the horizon hides, and never what is on the far side.
+// A bend lifts ground into sight. Behind it are places whose line of sight comes out of the bent globe.
 TEST_F(LaidOutThings, BehindABentGlobeAreNotDrawn)
 {
-    osg::ref_ptr<osg::CoordinateSystemNode> earth = new osg::CoordinateSystemNode;
-    const osg::ref_ptr<osg::EllipsoidModel> ellipsoid = new osg::EllipsoidModel;
-    earth->setEllipsoidModel(ellipsoid);
-    earth->addChild(_labels);
-    _scene->addChild(earth);
-    EffectScene::GroundDescription heights;
-    heights.minHeight = -1000.0;
-    heights.maxHeight = 9000.0;
-    ASSERT_TRUE(_scene->setGround(heights));
-    _scene->addEffect(new BirdsEyeView);
-    const auto placeAt = [&](double latitude, double longitude)
-    {
-        osg::Vec3d place;
-        ellipsoid->convertLatLongHeightToXYZ(latitude, longitude, 100.0, place.x(), place.y(), place.z());
-        return place;
-    };
-    // North of the eye, from 5 km to 10 times the way to the horizon, and all around on the far side.
-    const double height = 5000.0, radius = ellipsoid->getRadiusEquator();
-    const double horizon = std::acos(radius / (radius + height));
-    for (int i = 0; i < 40; ++i)
-        add(placeAt(5000.0 / radius + horizon * 10.0 * i / 40.0, 0.0));
-    const std::size_t ahead = _all.size();
+    ASSERT_TRUE(makeGlobe());
+    const double radius = _ellipsoid->getRadiusEquator();
     Random random(7);
-    for (int i = 0; i < 200; ++i)
-        add(placeAt(random.uniform(-1.2, 1.2), osg::PI + random.uniform(-1.0, 1.0)));
+    // Ahead of the eye, up to far beyond the horizon.
+    for (int i = 0; i < 600; ++i)
+        add(placeAt(random.logarithmic(5e3, 8e6) / radius, random.uniform(-0.15, 0.15), 100.0));
     CullHarness harness(context(), _scene, WIDTH, HEIGHT);
-    const osg::Vec3d eye = placeAt(0.0, 0.0) * (1.0 + height / radius);
     const osg::Vec3d up(1.0, 0.0, 0.0), north(0.0, 0.0, 1.0);
-    const osg::Matrixd view = osg::Matrixd::lookAt(eye, eye + north - up * 0.9, up);
-    const osg::Matrixd projection =
-        osg::Matrixd::perspective(50.0, static_cast<double>(WIDTH) / HEIGHT, 100.0, 1e8);
-    harness.setCamera(view, projection);
-    anchors.clear();
-    harness.frame(true, false);
-    const osg::ref_ptr<const DeformationChain> deformation = chain(view, projection);
-    ASSERT_FALSE(deformation->empty());
-    int near = 0, far = 0;
-    for (std::size_t i = 0; i < _all.size(); ++i)
+    osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
+    exaggeration->setFactor(3.0);
+    for (const bool alsoHigh : {false, true})
     {
-        const bool drawn = anchors.count(_all[i].drawable) > 0;
-        if (i >= ahead)
-            far += drawn ? 1 : 0;
-        else if (isWithin(pixelOf(deformation->deform(_all[i].place * view), projection), 5.0))
-            near += drawn ? 1 : 0;
+        if (alsoHigh) _scene->addEffect(exaggeration);
+        const osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
+        _scene->addEffect(bend);
+        int shown = 0, hidden = 0;
+        for (int camera = 0; camera < 10; ++camera)
+        {
+            const osg::Vec3d eye = placeAt(0.0, 0.0, random.logarithmic(2000.0, 50000.0));
+            const osg::Matrixd view =
+                osg::Matrixd::lookAt(eye, eye + north - up * random.uniform(0.5, 1.2), up);
+            const osg::Matrixd projection =
+                osg::Matrixd::perspective(50.0, static_cast<double>(WIDTH) / HEIGHT, 100.0, 1e8);
+            harness.setCamera(view, projection);
+            anchors.clear();
+            harness.frame(true, false);
+            const osg::ref_ptr<const DeformationChain> deformation = chain(view, projection);
+            const osg::Matrixd toWorld = osg::Matrixd::inverse(view);
+            const auto heightOf = [&](const osg::Vec3d& place)
+            {
+                const osg::Vec3d world = deformation->undeform(place) * toWorld;
+                double latitude = 0.0, longitude = 0.0, height = 0.0;
+                _ellipsoid->convertXYZToLatLongHeight(world.x(), world.y(), world.z(), latitude, longitude,
+                                                      height);
+                return height;
+            };
+            for (const Label& label : _all)
+            {
+                const osg::Vec3d place = deformation->deform(label.place * view);
+                if (!isWithin(pixelOf(place, projection), 5.0)) continue;
+                // How deep below the bent ground the line of sight comes from.
+                double deepest = 0.0;
+                for (int step = 1; step < 200; ++step)
+                    deepest = std::min(deepest, heightOf(place * (1.0 - step / 200.0)));
+                if (deepest < 0.0 && deepest > -50.0) continue;
+                const bool behind = deepest < 0.0;
+                EXPECT_EQ(anchors.count(label.drawable), behind ? 0u : 1u)
+                    << "deepest " << deepest << " m, " << place.length() << " m away";
+                (behind ? hidden : shown) += 1;
+            }
+        }
+        EXPECT_GT(shown, 30);
+        EXPECT_GT(hidden, 50);
+        while (_scene->getNumEffects() > 0)
+            _scene->removeEffect(_scene->getEffect(0));
     }
-    EXPECT_GT(near, 3);
-    EXPECT_EQ(far, 0);
 }

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/detail/GlobeHorizon.h>
 
+#include <osgGeoFX/effect/detail/InnerSphere.h>
+
 #include <osg/Math>
 
 #include <algorithm>
@@ -13,12 +15,12 @@ namespace osgGeoFX
 namespace
 {
 
-/// As createHorizonCulling() has it.
-constexpr double INNER_SHARE = 0.99;
 /// Of the equator's radius: no mountain is higher, and no sea deeper, on the Earth, the Moon and Mars.
 constexpr double UNKNOWN_SHARE = 0.0035;
 /// Radians. Larger parts of a globe are in sight from almost everywhere.
 constexpr double LARGEST_ANGLE = 1.45;
+/// Metres. Within a ball of this radius an affine map is found exactly enough.
+constexpr double SMALLEST = 1000.0;
 /// Callbacks hold floats.
 constexpr double ROUNDING = 1e-5;
 /// The largest angle between a vertical of the ellipsoid and the line to its center, radians.
@@ -75,7 +77,8 @@ std::optional<osg::Vec3d> GlobeHorizon::eyeBefore(const Ball& ball, double stret
     Ball moved = ball;
     for (std::size_t i = 0; i < _affineFrom; ++i)
         moved = snapshots[i]->bound(moved);
-    moved.radius += stretch;
+    // Of a single place the map could not be told.
+    moved.radius = std::max(moved.radius + stretch, SMALLEST);
     osg::Matrixd whole;
     for (std::size_t i = _affineFrom; i < snapshots.size(); ++i)
     {
@@ -209,14 +212,15 @@ bool GlobeHorizon::hidesPlace(const osg::Vec3d& position) const
     osg::Vec3d place = position;
     for (std::size_t i = 0; i < _affineFrom; ++i)
         place = _chain->snapshots()[i]->deform(place);
+    // Where the line of sight comes out of the unit sphere, as a share of its way to the place. An eye before the map may be within.
     const osg::Vec3d from = scaled(*eye), toPlace = scaled(place) - from;
-    const double toHorizon = from.length2() - 1.0, along = -(toPlace * from);
-    if (!(toHorizon > 0.0 && along > toHorizon && along * along > toHorizon * toPlace.length2()))
-        return false;
-    // One affine map must hold from the place back to where the line of sight leaves the ellipsoid.
-    const double root = std::sqrt(along * along - toHorizon * toPlace.length2());
-    const double behind = 1.0 - (along + root) / toPlace.length2();
-    return eyeBefore({position, 0.0}, std::max(behind, 0.0) * (place - *eye).length()).has_value();
+    const double half = from * toPlace, square = toPlace.length2();
+    const double rest = half * half - square * (from.length2() - 1.0);
+    if (!(rest > 0.0)) return false;
+    const double comesOut = (std::sqrt(rest) - half) / square;
+    if (!(comesOut > 0.0 && comesOut < 1.0)) return false;
+    // One affine map must hold from there on.
+    return eyeBefore({position, 0.0}, (1.0 - comesOut) * (place - *eye).length()).has_value();
 }
 
 } // namespace osgGeoFX

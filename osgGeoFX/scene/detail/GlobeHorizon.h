@@ -59,11 +59,11 @@ private:
         double radius;     ///< an angle
     };
     bool hides(const Cap& cap, const Ball& ball) const;
-    /// The eye before the affine map of all that is within `stretch` of a ball; empty where there is no such map.
     /// A direction from the center, in a space where the smooth globe is the unit sphere, whose length is the distance.
     osg::Vec3d scaled(const osg::Vec3d& position) const;
     /// The eye before the affine map in force at a place far ahead; the eye itself where nothing but vertical movements is.
     std::optional<osg::Vec3d> eyeAhead() const;
+    /// The eye before the affine map of all that is within `stretch` of a ball; empty where there is no such map.
     std::optional<osg::Vec3d> eyeBefore(const Ball& ball, double stretch) const;
     /// The longest part of a line of sight from a place on a cap to the sphere.
     double stretchWithin(const Cap& cap, const osg::Vec3d& eye) const;

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/detail/TileHorizon.h>
 
+#include <osgGeoFX/effect/detail/InnerSphere.h>
+
 #include <GeographicLib/Constants.hpp>
 
 #include <osg/Math>
@@ -16,9 +18,6 @@ namespace osgGeoFX
 namespace
 {
 
-/// Of the polar radius: 64 km less. Deep seas and the triangles of coarse meshes, where they are drawn, stay outside of that
-/// sphere.
-constexpr double INNER_SHARE = 0.99;
 /// Radians. Larger tiles are in sight from almost everywhere.
 constexpr double LARGEST_ANGLE = 1.4;
 
