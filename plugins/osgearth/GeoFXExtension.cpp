@@ -35,8 +35,8 @@
 namespace osgGeoFX
 {
 
-// osgEarth's interfaces have no virtual destructors; nobody deletes by them.
-/// Raises the eye of the horizon by which osgEarth culls annotations and features, of the map's layers. The scene itself leaves out labels that the deformed globe hides.
+/// Raises the eye of the horizon by which osgEarth culls the annotations and features of the map's layers. The scene itself leaves out
+/// labels that the deformed globe hides.
 class HorizonRaiser : public osg::NodeCallback
 {
 public:
@@ -53,10 +53,11 @@ public:
         horizon->setEye(*viewPoint, nullptr);
         traverse(node, visitor);
         // Draping goes by the eye.
-        horizon->setEye(eye, nullptr);
+        horizon->setEye(eye, visitor->asCullVisitor()->getProjectionMatrix());
     }
 };
 
+// osgEarth's interfaces have no virtual destructors; nobody deletes by them.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wnon-virtual-dtor"
 
