@@ -12,7 +12,7 @@ namespace osgGeoFX
 void DrawableSight::begin(const Wishes& wishes)
 {
     _wishes = wishes;
-    _depths.clear(_sight.depths(), wishes.meshes, &_sight.frustum());
+    _depths.clear(_sight.depths(), wishes.meshes, &_sight.picture());
     _complaint.clear();
     if (wishes.bounds) _bounds.begin();
 }

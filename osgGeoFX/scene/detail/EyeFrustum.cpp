@@ -58,7 +58,7 @@ constexpr double coarse = 0.1;
 /// Metres; 15 Earths. Bounds that are wider say nothing.
 constexpr double BOUNDLESS = 2e8;
 
-/// By how much boxes may widen the range of depths before triangles are looked at: a factor.
+/// The farthest depth of a box over its nearest one, from which on its triangles are looked at.
 constexpr double LOOSENESS = 1.1;
 
 } // namespace
@@ -191,8 +191,8 @@ void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationC
     if (_meshes != Meshes::No && mesh.drawable)
     {
         // Nothing of it is certain, but that a box whose middle shows is about that far away.
-        if (_meshes == Meshes::Loosely && _frustum && _frustum->holds(deformed.center, _frustum->all()))
-            include(depth, depth);
+        const bool isShown = _frustum && _frustum->holds(deformed.center, _frustum->all());
+        if (_meshes == Meshes::Loosely && isShown) include(depth, depth);
         if (!covers(deformed))
             _candidates.push_back(
                 {box, &chain, depth - deformed.radius, depth + deformed.radius, margin, mesh});
@@ -247,7 +247,15 @@ void DepthRange::measure(Candidate& candidate)
             candidate.ofBox = true;
             candidate.nearest = std::max(candidate.nearest, nearest);
             candidate.farthest = std::min(candidate.farthest, farthest);
-            return;
+            // By its own depths alone, so that the result does not depend on what else there is.
+            const bool isTight = nearest > 0.0 && farthest <= LOOSENESS * nearest;
+            if (_meshes == Meshes::NearAndFar || !isTight) return;
+            if (_meshes == Meshes::Near)
+            {
+                _farthest = std::max(_farthest, candidate.farthest);
+                candidate.farthest = -DBL_MAX;
+                return;
+            }
         }
         isKnown = isBounded || measureMesh();
     }
@@ -276,24 +284,12 @@ void DepthRange::settle()
     {
         Candidate& first = *std::min_element(_candidates.begin(), _candidates.end(), nearer);
         if (first.nearest >= _nearest) break;
-        if (_meshes == Meshes::Loosely && first.ofBox && first.nearest > 0.0 &&
-            LOOSENESS * first.nearest >= _nearest)
-        {
-            _nearest = first.nearest;
-            break;
-        }
         measure(first);
     }
-    const bool isLoose = _meshes == Meshes::Loosely || _meshes == Meshes::Near;
     while (!_candidates.empty())
     {
         Candidate& last = *std::max_element(_candidates.begin(), _candidates.end(), farther);
         if (last.farthest <= _farthest) break;
-        if (isLoose && last.ofBox && last.farthest <= LOOSENESS * _farthest)
-        {
-            _farthest = last.farthest;
-            break;
-        }
         measure(last);
     }
     _candidates.clear();

@@ -57,8 +57,8 @@ private:
 class DepthRange
 {
 public:
-    /// Which of the two ends go by triangles. An end that goes by boxes goes by triangles, too, where boxes would widen the range by
-    /// more than a tenth.
+    /// Which of the two ends go by triangles. An end that goes by boxes goes by triangles, too, for a box whose farthest depth is more
+    /// than a tenth above its nearest one.
     enum class Meshes
     {
         No,      ///< neither, however wide

@@ -15,6 +15,13 @@ void Visibility::set(const Camera& camera)
     const bool sized = viewport && viewport->width() >= 1.0 && viewport->height() >= 1.0;
     const osg::Matrixd toEye = camera.image ? camera.image->toEye : osg::Matrixd();
     const osg::Matrixd toClip = camera.image ? toEye * camera.projection : camera.projection;
+    const auto setPicture = [this](const osg::Matrixd& projection)
+    {
+        osg::Polytope sides;
+        sides.setToUnitFrustum(false, false);
+        sides.transformProvidingInverse(projection);
+        _picture.set(&sides, projection, true);
+    };
     if (camera.reach > 0.0 && sized)
     {
         // The picture is made wider, so that an object beside it is drawn as long as it reaches into the camera's
@@ -26,6 +33,7 @@ void Visibility::set(const Camera& camera)
         planes.setToUnitFrustum(camera.nearPlane, camera.farPlane);
         planes.transformProvidingInverse(wider);
         _frustum.set(camera.planes ? &planes : nullptr, wider, camera.sides);
+        setPicture(wider);
     }
     else
     {
@@ -37,6 +45,7 @@ void Visibility::set(const Camera& camera)
             planes.transformProvidingInverse(toEye);
         }
         _frustum.set(camera.planes && camera.image ? &planes : camera.planes, toClip, camera.sides);
+        setPicture(toClip);
     }
     _depths.set(-toEye(0, 2), -toEye(1, 2), -toEye(2, 2), -toEye(3, 2));
     // What a view hides can be seen from elsewhere, or its shadow can. In a part of the picture the room has other lengths.

@@ -42,7 +42,8 @@ public:
     double radiusOfPixel(const osg::Vec3d& point) const;
     /// What a depth in front of the camera's eye is, metres: the product with (x, y, z, 1).
     const osg::Vec4d& depths() const { return _depths; }
-    const EyeFrustum& frustum() const { return _frustum; }
+    /// The sides of the picture, whatever culls.
+    const EyeFrustum& picture() const { return _picture; }
 
     /// Whether a deformed ball is out of sight. Removes the planes from the mask that have the whole ball on their
     /// inner side. `mayBeSmall`: its size does not count.
@@ -66,7 +67,7 @@ public:
     bool outOfSight(const DeformationChain& chain, const EyeBox& box, Mask planes, int halvings = 0);
 
 private:
-    EyeFrustum _frustum;
+    EyeFrustum _frustum, _picture;
     osg::Vec2d _room; ///< the reach in the picture's x and y (−1…1)
     double _smallPixels = 0.0;
     osg::Vec4d _pixelSize;
