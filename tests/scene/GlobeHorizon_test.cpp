@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// The plane at which engines clip what they draw without a depth test.
+// What the horizon of a deformed globe hides, and the plane at which engines clip what they draw without a depth test.
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
@@ -22,10 +22,10 @@ using namespace geofx::test;
 namespace
 {
 
-class GlobeHorizonPlane : public testing::Test
+class GlobeHorizonTest : public testing::Test
 {
 protected:
-    GlobeHorizonPlane()
+    GlobeHorizonTest()
     {
         _ground.ellipsoid = _ellipsoid;
         _ground.minHeight = 0.0;
@@ -61,7 +61,7 @@ protected:
 } // namespace
 
 // It is where osgEarth has its own.
-TEST_F(GlobeHorizonPlane, IsThatOfThePlainGlobeWhereNothingMoves)
+TEST_F(GlobeHorizonTest, PlaneIsThatOfThePlainGlobeWhereNothingMoves)
 {
     const osg::ref_ptr<VerticalExaggeration> weak = new VerticalExaggeration;
     weak->setFactor(1.0000001);
@@ -84,7 +84,7 @@ TEST_F(GlobeHorizonPlane, IsThatOfThePlainGlobeWhereNothingMoves)
     }
 }
 
-TEST_F(GlobeHorizonPlane, HasAllThatIsSeenOnItsPositiveSide)
+TEST_F(GlobeHorizonTest, PlaneHasAllThatIsSeenOnItsPositiveSide)
 {
     Random random(11);
     int planes = 0, seen = 0, cut = 0;
@@ -133,11 +133,44 @@ TEST_F(GlobeHorizonPlane, HasAllThatIsSeenOnItsPositiveSide)
     EXPECT_GT(cut, 1000);
 }
 
-TEST_F(GlobeHorizonPlane, IsNotThereInPanoramaMaps)
+TEST_F(GlobeHorizonTest, PlaneIsNotThereInPanoramaMaps)
 {
     _scene->addEffect(new PanoramaMap);
     const osg::Matrixd view = lookFrom(placeAt(0.0, 0.0, 8000.0), 0.4);
     const osg::ref_ptr<const DeformationChain> chain = _scene->deformation(view, _projection);
     ASSERT_FALSE(chain->empty());
     EXPECT_FALSE(GlobeHorizon(*chain, ViewGeometry(view, _projection, _ground), {}).plane());
+}
+
+// The highest peaks come into sight long before the ground at their feet, and the sooner the higher an effect makes them.
+TEST_F(GlobeHorizonTest, HidesNoPeakThatIsSeen)
+{
+    Random random(12);
+    int seen = 0, hidden = 0;
+    for (int i = 0; i < 30; ++i)
+    {
+        while (_scene->getNumEffects() > 0)
+            _scene->removeEffect(_scene->getEffect(0));
+        osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
+        exaggeration->setFactor(random.logarithmic(2.0, 30.0));
+        _scene->addEffect(exaggeration);
+        const osg::Matrixd view = lookFrom(placeAt(0.0, 0.0, random.logarithmic(1e4, 1e6)), 0.4);
+        const osg::ref_ptr<const DeformationChain> chain = _scene->deformation(view, _projection);
+        const GlobeHorizon horizon(*chain, ViewGeometry(view, _projection, _ground), {});
+        const osg::Vec3d center = osg::Vec3d() * view;
+        for (int j = 0; j < 200; ++j)
+        {
+            const osg::Vec3d peak = placeAt(0.0, random.uniform(0.0, 1.5), 9000.0) * view;
+            const osg::Vec3d place = chain->deform(peak);
+            // How near to the Earth's center the line of sight comes.
+            const double along = std::clamp((place * center) / place.length2(), 0.0, 1.0);
+            const bool isSeen = (place * along - center).length() > _ellipsoid->getRadiusEquator();
+            const bool isHidden = horizon.hides(Ball{peak, 1000.0});
+            EXPECT_FALSE(isSeen && isHidden) << "camera " << i << ", " << place.length() << " m away";
+            seen += isSeen ? 1 : 0;
+            hidden += isHidden ? 1 : 0;
+        }
+    }
+    EXPECT_GT(seen, 500);
+    EXPECT_GT(hidden, 500);
 }
