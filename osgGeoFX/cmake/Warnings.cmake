@@ -1,7 +1,11 @@
 # Warnings and sanitizers for everything that is ours; headers of others are SYSTEM and stay silent.
 add_library(geofx_warnings INTERFACE)
-target_compile_options(geofx_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+target_compile_options(geofx_warnings INTERFACE -Wall -Wextra -Wpedantic -Wnon-virtual-dtor
                        -Woverloaded-virtual -Wcast-align -Wdouble-promotion -Wformat=2)
+# In groups of files (Unity.cmake) names of one file hide those of another, and types of one are anonymous in another's.
+set(geofx_grouped $<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>)
+target_compile_options(geofx_warnings INTERFACE $<$<NOT:${geofx_grouped}>:-Wshadow>
+                       $<$<AND:${geofx_grouped},$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
 option(GEOFX_WARNINGS_AS_ERRORS "Stop at the first compiler warning" ${PROJECT_IS_TOP_LEVEL})
 if(GEOFX_WARNINGS_AS_ERRORS)
   target_compile_options(geofx_warnings INTERFACE -Werror)

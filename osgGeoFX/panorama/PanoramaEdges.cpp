@@ -14,8 +14,6 @@ namespace osgGeoFX
 namespace
 {
 
-/// From D2 to where nothing shows any more, of D2; as in PanoramaSnapshot.cpp.
-constexpr double endOfHeights = 1.25;
 /// Of x, s and height on a globe, for each metre of its curvature: as in PanoramaSnapshot.cpp, up to 60° of arc.
 constexpr double globeCurvature = 2.1 * 4.1 * 1.55;
 

@@ -13,6 +13,9 @@
 namespace osgGeoFX
 {
 
+/// The distance where heights have faded and nothing shows any more, as a multiple of D2.
+constexpr double endOfHeights = 1.25;
+
 /// The curve through at most six points (distance, height), both shares of the horizon's, 0…1: they increase strictly in distance and
 /// do not decrease in height. It has no points, and `first` is 0, if there are none.
 glsl::geofx_Profile profileThrough(const std::vector<osg::Vec2d>& points);

@@ -17,8 +17,6 @@ namespace osgGeoFX
 namespace
 {
 
-/// The distance where heights have faded and nothing shows any more, as a multiple of D2.
-constexpr double endOfHeights = 1.25;
 constexpr double leastRadius = 1e-3;
 /// The border of the picture, of its half width and height, with room for rounding.
 constexpr double beside = 1.0 + 1e-4;

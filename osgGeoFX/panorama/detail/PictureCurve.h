@@ -13,8 +13,6 @@
 namespace osgGeoFX
 {
 
-/// Heights show up to this multiple of D2, as in PanoramaSnapshot.cpp.
-constexpr double endOfHeights = 1.25;
 /// The tip of the highest summit: so much of the sky lies below it. The title says "the sky's lower half".
 constexpr double tipInSky = 0.42;
 /// The ground before the picture's base that may rise into it, in view radii.
