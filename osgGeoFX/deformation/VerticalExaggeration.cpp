@@ -15,6 +15,9 @@ namespace osgGeoFX
 namespace
 {
 
+/// Hulls follow from a series up to balls of this radius, of the way to the Earth's center.
+constexpr double largestShare = 0.4;
+
 class ExaggerationSnapshot : public DeformationSnapshot
 {
 public:
@@ -64,6 +67,49 @@ public:
         const double second = std::abs(_view.factor - 1.0) * 1.3 * (3.0 * k + 3.0 * k * k * lift);
         return {second * edge.length2(), 0.0};
     }
+    void boundBox(const EyeBox& box, Hull& hull, double fineness) const override
+    {
+        const Ball ball = box.ball();
+        const glm::dvec3 center = toGlm(box.center);
+        const glm::dvec3 gradient = glsl::geofx_exaggerationGradient(_view, center);
+        // From here on, lengths of the ball's place: of the way to the Earth's center.
+        const double k = _view.curvature / std::max(glm::length(gradient), 0.1);
+        const double share = k * ball.radius;
+        const osg::Vec3d up = toOsg(glm::normalize(gradient));
+        const double along =
+            std::abs(box.half[0] * up) + std::abs(box.half[1] * up) + std::abs(box.half[2] * up);
+        const double middle = height(box.center);
+        // No height is less than over the plane through the middle.
+        if (_view.curvature <= 0.0 || share > largestShare || isDeep(middle - along))
+        {
+            DeformationSnapshot::boundBox(box, hull, fineness);
+            return;
+        }
+        // On a sphere a position x from the center goes to x + (factor − 1)·(x − (radius + base)·x/|x|). The series of x/|x| around
+        // the box's middle: its first terms make a box of the box. Its second ones, with d = a·up + t, are −k²·(t²/2·up + a·t),
+        // and a flattened Earth changes them by a share of about its flattening. The rest is less than the cube of `share`, over
+        // 1 − share.
+        const double strength = std::abs(_view.factor - 1.0) * (1.0 / k - (middle - _view.base)) * k * k;
+        EyeBox image;
+        image.center = deform(box.center);
+        for (int axis = 0; axis < 3; ++axis)
+            image.half[axis] =
+                (deform(box.center + box.half[axis]) - deform(box.center - box.half[axis])) * 0.5;
+        image.corners(hull.points);
+        // t² is convex. So what is between the corners lies between the box and the box whose corners are lifted.
+        std::vector<osg::Vec3d>& points = hull.points;
+        const std::size_t corners = points.size();
+        const osg::Vec3d lift = up * ((_view.factor > 1.0 ? 0.5 : -0.5) * strength);
+        for (std::size_t i = 0; i < corners; ++i)
+        {
+            const osg::Vec3d d = box.half[0] * (i & 4 ? 1.0 : -1.0) + box.half[1] * (i & 2 ? 1.0 : -1.0) +
+                                 box.half[2] * (i & 1 ? 1.0 : -1.0);
+            points.push_back(points[i] + lift * std::max(d.length2() - (d * up) * (d * up), 0.0));
+        }
+        const double square = ball.radius * ball.radius;
+        hull.margin = std::abs(strength) * (std::min(along, ball.radius) * ball.radius +
+                                            2.0 * _view.flattening * square + square * share / (1.0 - share));
+    }
     std::optional<double> movedHeight(double height) const override
     {
         return _view.base + _view.factor * (height - _view.base);
@@ -84,11 +130,9 @@ private:
         return glsl::geofx_exaggerationHeight(_view, toGlm(position));
     }
 
-    /// Whether a ball goes deeper than a tenth of the Earth's radius. Verticals meet there, and derivatives bound little.
-    bool deep(const Ball& ball) const
-    {
-        return _view.curvature > 0.0 && (height(ball.center) - ball.radius) * _view.curvature < -0.1;
-    }
+    /// Whether a height is deeper than a tenth of the Earth's radius. Verticals meet there, and derivatives bound little.
+    bool isDeep(double height) const { return _view.curvature > 0.0 && height * _view.curvature < -0.1; }
+    bool deep(const Ball& ball) const { return isDeep(height(ball.center) - ball.radius); }
     /// How far anything in a ball moves at most, metres: no height is larger than the distance from the foot or the radius.
     double farthest(const Ball& ball) const
     {

@@ -235,6 +235,78 @@ TEST(Exaggeration, LosesLittleInFloats)
     RecordProperty("worst_metres_of_height", std::to_string(worstHeight));
 }
 
+TEST(Exaggeration, HullsHoldBoxesOfEverySizeOnAGlobe)
+{
+    osgGeoFX::Hull hull;
+    std::vector<double> excess;
+    for (int sample = 0; sample < sampleCount(); ++sample)
+    {
+        Random random(static_cast<std::uint64_t>(sample));
+        CameraPose pose = randomCommonPose(random);
+        pose.globe = true;
+        const osg::ref_ptr<VerticalExaggeration> effect = new VerticalExaggeration;
+        effect->setFactor(random.logarithmic(0.05, 50.0));
+        effect->setBaseHeight(random.uniform(-5000.0, 5000.0));
+        const osgGeoFX::ViewGeometry view = pose.view();
+        const auto snapshot = effect->snapshot(view);
+        ASSERT_TRUE(snapshot);
+        // A tile within 60° of arc, which may stand as the ground does there or lean.
+        osgGeoFX::EyeBox box;
+        const Vec3d middle = view.up * (-view.eyeHeight - 6.37e6);
+        Vec3d up = view.up + randomDirection(random) * random.uniform(0.0, 0.8);
+        up.normalize();
+        box.center = middle + up * (6.37e6 + random.logarithmic(1.0, 2e6) - 5000.0);
+        const bool leans = random.uniform(0.0, 1.0) < 0.3;
+        const Vec3d axis = leans ? randomDirection(random) : up;
+        Vec3d east = axis ^ randomDirection(random);
+        east.normalize();
+        const double size = random.logarithmic(10.0, 2.5e6);
+        box.half[0] = east * size;
+        box.half[1] = (axis ^ east) * (size * random.uniform(0.2, 1.0));
+        box.half[2] = axis * (size * (leans ? random.uniform(0.0, 1.0) : 0.02));
+        snapshot->boundBox(box, hull, 0.02);
+        SCOPED_TRACE(::testing::Message() << sample << ": factor " << effect->getFactor() << ", size " << size
+                                          << ", margin " << hull.margin << "; " << pose);
+        std::vector<Vec3d> deformed;
+        for (int i = 0; i < 60; ++i)
+        {
+            Vec3d point = box.center;
+            for (const Vec3d& half : box.half)
+                point += half * (i < 20 ? std::round(random.uniform(-1.5, 1.5)) : random.uniform(-1.0, 1.0));
+            deformed.push_back(snapshot->deform(point));
+        }
+        const double rounding = 1e-9 * (box.center.length() + view.eyeHeight + 6.4e6);
+        for (int i = 0; i < 20; ++i)
+        {
+            const Vec3d direction = i < 2 ? up * (i ? 1.0 : -1.0) : randomDirection(random);
+            double most = -HUGE_VAL, least = HUGE_VAL, needed = -HUGE_VAL, from = HUGE_VAL;
+            for (const Vec3d& point : hull.points)
+            {
+                most = std::max(most, point * direction);
+                least = std::min(least, point * direction);
+            }
+            for (const Vec3d& point : deformed)
+            {
+                needed = std::max(needed, point * direction);
+                from = std::min(from, point * direction);
+            }
+            EXPECT_LE(needed, most + hull.margin + rounding);
+            if (!leans && size < 1e5) excess.push_back((most - least + 2.0 * hull.margin) / (needed - from));
+        }
+        // Culling makes many.
+        if (size < 1e5)
+        {
+            EXPECT_LE(hull.points.size(), 16u);
+        }
+        if (HasFailure()) return;
+    }
+    std::sort(excess.begin(), excess.end());
+    RecordProperty("median_excess", std::to_string(excess[excess.size() / 2]));
+    RecordProperty("excess_of_95_percent", std::to_string(excess[excess.size() * 95 / 100]));
+    EXPECT_LT(excess[excess.size() / 2], 1.02);
+    EXPECT_LT(excess[excess.size() * 95 / 100], 1.2);
+}
+
 // What another deformation has thrown deep below the ground: verticals meet there, and derivatives bound nothing.
 TEST(Exaggeration, BoundsHoldDeepInTheEarth)
 {
