@@ -102,6 +102,17 @@ void DeformationSnapshot::boundBox(const EyeBox& box, Hull& hull, double finenes
         hull.margin += sagOf(along, count);
     }
     hull.margin += roughness(ball);
+    if (hull.margin >= ball.radius)
+    {
+        // Where derivatives bound nothing, the ball says as much.
+        const Ball image = bound(ball);
+        if (hull.margin >= image.radius)
+        {
+            hull.points.assign(1, image.center);
+            hull.margin = image.radius;
+            return;
+        }
+    }
     hull.points.clear();
     for (int i = 0; i <= cells[0]; ++i)
     {

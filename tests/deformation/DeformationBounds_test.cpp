@@ -169,6 +169,13 @@ void expectBoxesHold(int most)
                        std::vector<Vec3d> deformed;
                        for (int i = 0; i < 30; ++i)
                            deformed.push_back(found.chain->deform(randomPointIn(box, random)));
+                       // Where derivatives bound nothing, a hull is no wider than a ball.
+                       const Ball ball = box.ball();
+                       if (found.chain->snapshots().size() == 1)
+                       {
+                           EXPECT_LE(hull.margin,
+                                     std::max(ball.radius, found.chain->bound(ball).radius) * (1.0 + 1e-9));
+                       }
                        const double allowed = hull.margin * (1.0 + 1e-9) + 1e-12 * scaleOf(found, box.center);
                        for (int i = 0; i < 20; ++i)
                        {
