@@ -17,6 +17,8 @@ namespace
 
 /// Hulls follow from a series up to balls of this radius, of the way to the Earth's center.
 constexpr double largestShare = 0.4;
+/// And no nearer to this center, of the Earth's radius.
+constexpr double leastWay = 0.15;
 
 class ExaggerationSnapshot : public DeformationSnapshot
 {
@@ -69,22 +71,29 @@ public:
     }
     void boundBox(const EyeBox& box, Hull& hull, double fineness) const override
     {
-        const Ball ball = box.ball();
-        const glm::dvec3 center = toGlm(box.center);
-        const glm::dvec3 gradient = glsl::geofx_exaggerationGradient(_view, center);
-        // From here on, lengths of the ball's place: of the way to the Earth's center.
-        const double k = _view.curvature / std::max(glm::length(gradient), 0.1);
-        const double share = k * ball.radius;
-        const osg::Vec3d up = toOsg(glm::normalize(gradient));
-        const double along =
-            std::abs(box.half[0] * up) + std::abs(box.half[1] * up) + std::abs(box.half[2] * up);
-        const double middle = height(box.center);
-        // No height is less than over the plane through the middle.
-        if (_view.curvature <= 0.0 || share > largestShare || isDeep(middle - along))
+        if (_view.curvature <= 0.0)
         {
             DeformationSnapshot::boundBox(box, hull, fineness);
             return;
         }
+        const Ball ball = box.ball();
+        const glm::dvec3 center = toGlm(box.center);
+        const glm::dvec3 gradient = glsl::geofx_exaggerationGradient(_view, center);
+        // The inverse of the way to the Earth's center.
+        const double k = _view.curvature / std::max(glm::length(gradient), 0.1);
+        const double share = k * ball.radius;
+        // Near the Earth's center verticals meet, and derivatives bound nothing.
+        if (share > largestShare || (1.0 - share) * _view.curvature < leastWay * k)
+        {
+            const Ball image = bound(ball);
+            hull.points.assign(1, image.center);
+            hull.margin = image.radius;
+            return;
+        }
+        const osg::Vec3d up = toOsg(glm::normalize(gradient));
+        const double along =
+            std::abs(box.half[0] * up) + std::abs(box.half[1] * up) + std::abs(box.half[2] * up);
+        const double middle = height(box.center);
         // On a sphere a position x from the center goes to x + (factor − 1)·(x − (radius + base)·x/|x|). The series of x/|x| around
         // the box's middle: its first terms make a box of the box. Its second ones, with d = a·up + t, are −k²·(t²/2·up + a·t),
         // and a flattened Earth changes them by a share of about its flattening. The rest is less than the cube of `share`, over
@@ -130,9 +139,11 @@ private:
         return glsl::geofx_exaggerationHeight(_view, toGlm(position));
     }
 
-    /// Whether a height is deeper than a tenth of the Earth's radius. Verticals meet there, and derivatives bound little.
-    bool isDeep(double height) const { return _view.curvature > 0.0 && height * _view.curvature < -0.1; }
-    bool deep(const Ball& ball) const { return isDeep(height(ball.center) - ball.radius); }
+    /// Whether a ball goes deeper than a tenth of the Earth's radius. Verticals meet there, and derivatives bound little.
+    bool deep(const Ball& ball) const
+    {
+        return _view.curvature > 0.0 && (height(ball.center) - ball.radius) * _view.curvature < -0.1;
+    }
     /// How far anything in a ball moves at most, metres: no height is larger than the distance from the foot or the radius.
     double farthest(const Ball& ball) const
     {
