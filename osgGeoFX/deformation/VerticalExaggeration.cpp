@@ -15,9 +15,9 @@ namespace osgGeoFX
 namespace
 {
 
-/// Hulls follow from a series up to balls of this radius, of the way to the Earth's center.
+/// A hull follows from a series if the box's radius is at most this share of its distance from the Earth's center.
 constexpr double largestShare = 0.4;
-/// And no nearer to this center, of the Earth's radius.
+/// And if no part of the box's ball is nearer to this center, in radii of the Earth.
 constexpr double leastWay = 0.15;
 
 class ExaggerationSnapshot : public DeformationSnapshot
@@ -71,33 +71,25 @@ public:
     }
     void boundBox(const EyeBox& box, Hull& hull, double fineness) const override
     {
-        if (_view.curvature <= 0.0)
-        {
-            DeformationSnapshot::boundBox(box, hull, fineness);
-            return;
-        }
         const Ball ball = box.ball();
-        const glm::dvec3 center = toGlm(box.center);
-        const glm::dvec3 gradient = glsl::geofx_exaggerationGradient(_view, center);
-        // The inverse of the way to the Earth's center.
+        const glm::dvec3 gradient = glsl::geofx_exaggerationGradient(_view, toGlm(box.center));
+        // One over the distance from the Earth's center.
         const double k = _view.curvature / std::max(glm::length(gradient), 0.1);
         const double share = k * ball.radius;
         // Near the Earth's center verticals meet, and derivatives bound nothing.
-        if (share > largestShare || (1.0 - share) * _view.curvature < leastWay * k)
+        if (_view.curvature <= 0.0 || share > largestShare || (1.0 - share) * _view.curvature < leastWay * k)
         {
-            const Ball image = bound(ball);
-            hull.points.assign(1, image.center);
-            hull.margin = image.radius;
+            DeformationSnapshot::boundBox(box, hull, fineness);
             return;
         }
         const osg::Vec3d up = toOsg(glm::normalize(gradient));
         const double along =
             std::abs(box.half[0] * up) + std::abs(box.half[1] * up) + std::abs(box.half[2] * up);
         const double middle = height(box.center);
-        // On a sphere a position x from the center goes to x + (factor − 1)·(x − (radius + base)·x/|x|). The series of x/|x| around
-        // the box's middle: its first terms make a box of the box. Its second ones, with d = a·up + t, are −k²·(t²/2·up + a·t),
-        // and a flattened Earth changes them by a share of about its flattening. The rest is less than the cube of `share`, over
-        // 1 − share.
+        // On a sphere a position x from the center goes to x + (factor − 1)·(x − (radius + base)·x/|x|). x/|x| is a series around the
+        // box's middle. Its first terms make a box of the box. Its second ones, at a·up + t from the middle with t across up, are
+        // −k²·(t²/2·up + a·t); a flattened Earth changes them by a share of about its flattening. The rest is less than
+        // share³/(1 − share).
         const double strength = std::abs(_view.factor - 1.0) * (1.0 / k - (middle - _view.base)) * k * k;
         EyeBox image;
         image.center = deform(box.center);
