@@ -1,5 +1,5 @@
 # Most of what compiling a file takes goes into the headers, precompiled or not: templates that they use are made anew for each file.
-# So files of a target are compiled in groups, which takes less than half the time. With GEOFX_UNITY=OFF each file is compiled by
+# So files of a target are compiled in groups, which takes little more than half the time. With GEOFX_UNITY=OFF each file is compiled by
 # itself: a change is then tried sooner, and all of them are built later.
 option(GEOFX_UNITY "Compile source files in groups" ON)
 set(GEOFX_UNITY_FILES 8) # of a group
