@@ -174,3 +174,40 @@ TEST_F(GlobeHorizonTest, HidesNoPeakThatIsSeen)
     EXPECT_GT(seen, 500);
     EXPECT_GT(hidden, 500);
 }
+
+// Most labels stand on the sea or a little below: there the line of sight from the far side comes out of the globe at the label.
+TEST_F(GlobeHorizonTest, HidesPlacesOnTheFarSideAtAnyHeight)
+{
+    Random random(14);
+    int seen = 0, hidden = 0;
+    for (int i = 0; i < 30; ++i)
+    {
+        while (_scene->getNumEffects() > 0)
+            _scene->removeEffect(_scene->getEffect(0));
+        osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
+        exaggeration->setFactor(random.logarithmic(0.2, 10.0));
+        _scene->addEffect(exaggeration);
+        const osg::Matrixd view = lookFrom(placeAt(0.0, 0.0, random.logarithmic(1e4, 3e7)), 0.4);
+        const osg::ref_ptr<const DeformationChain> chain = _scene->deformation(view, _projection);
+        const GlobeHorizon horizon(*chain, ViewGeometry(view, _projection, _ground), {});
+        const double eye = (osg::Vec3d() * view).length();
+        const double atHorizon = std::acos(_ellipsoid->getRadiusEquator() / eye);
+        for (const double height : {-50.0, -0.001, 0.0, 0.001, 50.0})
+        {
+            for (int j = 0; j < 40; ++j)
+            {
+                const double longitude = random.uniform(-osg::PI, osg::PI);
+                const double beyond = std::abs(longitude) - atHorizon;
+                // Such heights are seen from a little farther away.
+                constexpr double little = 0.03;
+                if (std::abs(beyond) < little) continue;
+                const bool isHidden = horizon.hidesPlace(placeAt(0.0, longitude, height) * view);
+                EXPECT_EQ(isHidden, beyond > 0.0)
+                    << "camera " << i << ", " << height << " m, " << beyond << " beyond the horizon";
+                ++(isHidden ? hidden : seen);
+            }
+        }
+    }
+    EXPECT_GT(seen, 500);
+    EXPECT_GT(hidden, 500);
+}

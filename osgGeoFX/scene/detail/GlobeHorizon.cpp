@@ -15,12 +15,13 @@ namespace osgGeoFX
 namespace
 {
 
-/// Of the equator's radius: no mountain is higher, and no sea deeper, on the Earth, the Moon and Mars.
-constexpr double UNKNOWN_SHARE = 0.0035;
 /// Radians. Larger parts of a globe are in sight from almost everywhere.
 constexpr double LARGEST_ANGLE = 1.45;
 /// Metres. Within a ball of this radius an affine map is found exactly enough.
 constexpr double SMALLEST = 1000.0;
+/// How far triangles sink below the ground's curve at the horizon, of the way there: several pixels' errors of what levels of detail
+/// draw. And at least, metres.
+constexpr double MESH_ERROR = 0.005, LEAST_SAG = 2000.0;
 /// Callbacks hold floats.
 constexpr double ROUNDING = 1e-5;
 /// The largest angle between a vertical of the ellipsoid and the line to its center, radians.
@@ -39,24 +40,22 @@ GlobeHorizon::GlobeHorizon(const DeformationChain& chain, const ViewGeometry& vi
     const double unknown = ground.heightsKnown ? 0.0 : UNKNOWN_SHARE * equator;
     double lowest = std::min(ground.minHeight, -unknown), highest = std::max(ground.maxHeight, unknown);
     const double tallest = highest;
-    double sinks = 0.0, lifts = 0.0, surface = 0.0;
+    double lifts = 0.0, surface = 0.0;
     for (const auto& snapshot : chain.snapshots())
     {
         const std::optional<double> low = snapshot->movedHeight(lowest),
                                     high = snapshot->movedHeight(highest);
         if (!low || !high) break;
-        // The sphere lies below the meshes' triangles as far as it did.
-        sinks += std::min({*low - lowest, *high - highest, 0.0});
         lifts += std::max(std::abs(*low - lowest), std::abs(*high - highest));
         surface = snapshot->movedHeight(surface).value_or(surface);
         lowest = *low;
         highest = *high;
         ++_affineFrom;
     }
-    _inner = sphere + sinks;
-    _highest = equator + std::max(highest, 0.0);
-    if (!(_inner > 0.1 * sphere) || !std::isfinite(_highest)) return;
-    _slack = ROUNDING + VERTICAL_ERROR * lifts / _inner;
+    _lowest = std::min(lowest, 0.0);
+    _highest = std::max(highest, 0.0);
+    if (!(_lowest > -0.9 * sphere) || !std::isfinite(_highest)) return;
+    _slack = ROUNDING + VERTICAL_ERROR * lifts / (sphere + _lowest);
     _flat = std::acos(sphere / equator);
     _surface = surface;
     const auto beyond = [equator](double height)
@@ -105,34 +104,50 @@ std::optional<osg::Vec3d> GlobeHorizon::eyeBefore(const Ball& ball, double stret
     return _eye * inverse;
 }
 
-double GlobeHorizon::stretchWithin(const Cap& cap, const osg::Vec3d& eye) const
+double GlobeHorizon::meshSag(const osg::Vec3d& eye) const
 {
-    const double longest = std::sqrt(_highest * _highest - _inner * _inner);
-    const osg::Vec3d toEye = eye - _center - cap.middle * _highest;
-    const double away = toEye.length(), width = 2.0 * _highest * cap.radius;
+    const double polar = _polar - _surface;
+    const double height = std::max((eye - _center).length() - polar, 0.0);
+    const double toHorizon = std::sqrt(height * (height + 2.0 * polar));
+    return std::clamp(MESH_ERROR * toHorizon, LEAST_SAG, (1.0 - INNER_SHARE) * polar);
+}
+
+double GlobeHorizon::stretchWithin(const Cap& cap, const osg::Vec3d& eye, double highest)
+{
+    const double longest = std::sqrt(highest * highest - 1.0);
+    const osg::Vec3d toEye = eye - cap.middle * highest;
+    const double away = toEye.length(), width = 2.0 * highest * cap.radius;
     if (!(away > width)) return longest;
     // Between a line of sight and the line from the place down to the center.
     const double angle =
         std::acos(std::clamp(-(toEye * cap.middle) / away, -1.0, 1.0)) + cap.radius + std::asin(width / away);
     if (!(angle < 0.5 * osg::PI)) return longest;
-    const double across = _highest * std::sin(angle);
-    if (!(across < _inner)) return longest;
-    return std::min(longest, _highest * std::cos(angle) - std::sqrt(_inner * _inner - across * across));
+    const double across = highest * std::sin(angle);
+    if (!(across < 1.0)) return longest;
+    return std::min(longest, highest * std::cos(angle) - std::sqrt(1.0 - across * across));
 }
 
 bool GlobeHorizon::hides(const Cap& cap, const Ball& ball) const
 {
-    const double angle = cap.radius + std::acos(_inner / _highest) + _slack;
-    if (!(angle < LARGEST_ANGLE)) return false;
+    if (!(cap.radius < LARGEST_ANGLE)) return false;
     const std::optional<osg::Vec3d> eye = eyeBefore(ball, 0.0);
     if (!eye) return false;
+    // In the space where the ellipsoid within all drawn ground is the unit sphere. There angles are larger by the ratio of its radii at
+    // most.
+    const double floor = _lowest - meshSag(*eye);
+    const Radii radii = {_equator - _surface + floor, _polar - _surface + floor};
+    const double highest = (_polar - _surface + _highest) / radii.polar;
+    Cap there = {scaled(cap.middle, radii), cap.radius * radii.equator / radii.polar};
+    there.middle.normalize();
+    const osg::Vec3d from = scaled(*eye - _center, radii);
+    const double angle = there.radius + std::acos(1.0 / highest) + _slack;
+    if (!(angle < LARGEST_ANGLE)) return false;
     // Lines of sight that graze the sphere and end at the cap's border form a cone.
-    const osg::Vec3d fromTip = *eye - _center - cap.middle * (_inner / std::cos(angle));
+    const osg::Vec3d fromTip = from - there.middle / std::cos(angle);
     const double distance = fromTip.length();
-    if (!(distance > _inner * std::tan(angle) && fromTip * cap.middle < -std::sin(angle) * distance))
-        return false;
+    if (!(distance > std::tan(angle) && fromTip * there.middle < -std::sin(angle) * distance)) return false;
     // One affine map must hold from the place to the sphere.
-    return eyeBefore(ball, stretchWithin(cap, *eye)).has_value();
+    return eyeBefore(ball, radii.equator * stretchWithin(there, from, highest)).has_value();
 }
 
 bool GlobeHorizon::hides(const osg::ClusterCullingCallback& callback, const osg::Matrixd& modelView,
@@ -160,11 +175,15 @@ bool GlobeHorizon::hides(const Ball& ball) const
     return hides({middle, std::asin(ball.radius / distance)}, ball);
 }
 
+osg::Vec3d GlobeHorizon::scaled(const osg::Vec3d& fromCenter, const Radii& radii) const
+{
+    const osg::Vec3d along = _axis * (fromCenter * _axis);
+    return (fromCenter - along) / radii.equator + along / radii.polar;
+}
+
 osg::Vec3d GlobeHorizon::scaled(const osg::Vec3d& position) const
 {
-    const osg::Vec3d fromCenter = position - _center;
-    const osg::Vec3d along = _axis * (fromCenter * _axis);
-    return (fromCenter - along) / _equator + along / _polar;
+    return scaled(position - _center, {_equator, _polar});
 }
 
 std::optional<osg::Vec3d> GlobeHorizon::eyeAhead() const
@@ -212,13 +231,14 @@ bool GlobeHorizon::hidesPlace(const osg::Vec3d& position) const
     osg::Vec3d place = position;
     for (std::size_t i = 0; i < _affineFrom; ++i)
         place = _chain->snapshots()[i]->deform(place);
-    // Where the line of sight comes out of the unit sphere, as a share of its way to the place. An eye before the map may be within.
     const osg::Vec3d from = scaled(*eye), toPlace = scaled(place) - from;
     const double half = from * toPlace, square = toPlace.length2();
     const double rest = half * half - square * (from.length2() - 1.0);
     if (!(rest > 0.0)) return false;
-    const double comesOut = (std::sqrt(rest) - half) / square;
-    if (!(comesOut > 0.0 && comesOut < 1.0)) return false;
+    // The line of sight enters the unit sphere, is nearest to its center at the share -half / square of its way to the place, and
+    // comes out. A label often stands on the sphere or a little below. It is on the far side if the line has been nearest before.
+    if (!(half < 0.0 && -half < square)) return false;
+    const double comesOut = std::min((std::sqrt(rest) - half) / square, 1.0);
     // One affine map must hold from there on.
     return eyeBefore({position, 0.0}, (1.0 - comesOut) * (place - *eye).length()).has_value();
 }

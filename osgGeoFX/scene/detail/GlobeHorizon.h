@@ -19,16 +19,19 @@ namespace osgGeoFX
 /** The horizon of a deformed globe, for one camera and one drawn frame. It is conservative: what it hides lies behind deformed
     ground.
 
-    A sphere within all ground stands for the globe, as it does in createHorizonCulling(). Deformations that move places along
-    their verticals change the sphere, and the heights above it. Where the rest of the deformations is one affine map, that map's
+    An ellipsoid within all ground that is drawn stands for the globe. Deformations that move places along
+    their verticals change the ellipsoid, and the heights above it. Where the rest of the deformations is one affine map, that map's
     inverse moves the eye instead. The last stretch of a line of sight is then a straight line in undeformed space, and ends at the
-    place that it would reach. Where this stretch runs through the sphere, it comes from within the deformed globe, whose surface
+    place that it would reach. Where this stretch runs through the ellipsoid, it comes from within the deformed globe, whose surface
     has therefore hidden the place before.
 
     All positions are in the view's eye space, metres. Immutable, so every thread may use it. */
 class GlobeHorizon
 {
 public:
+    /// Of the equator's radius: no mountain is higher, and no sea deeper, on the Earth, the Moon and Mars.
+    static constexpr double UNKNOWN_SHARE = 0.0035;
+
     /// Hides nothing.
     GlobeHorizon() = default;
     /// `chain` must outlive the object. `eye`: of the camera that draws. Hides nothing where the ground is a plane. Unknown heights count
@@ -58,15 +61,25 @@ private:
         osg::Vec3d middle; ///< a unit vector
         double radius;     ///< an angle
     };
+    /// Of an ellipsoid, metres.
+    struct Radii
+    {
+        double equator, polar;
+    };
     bool hides(const Cap& cap, const Ball& ball) const;
-    /// A direction from the center, in a space where the smooth globe is the unit sphere, whose length is the distance.
+    /// How far drawn triangles sink below the ground's curve at most where the globe hides anything, metres.
+    double meshSag(const osg::Vec3d& eye) const;
+    /// A vector from the center, in a space where an ellipsoid is the unit sphere.
+    osg::Vec3d scaled(const osg::Vec3d& fromCenter, const Radii& radii) const;
+    /// A position, from the center, in the space where the smooth globe is the unit sphere.
     osg::Vec3d scaled(const osg::Vec3d& position) const;
     /// The eye before the affine map in force at a place far ahead; the eye itself where nothing but vertical movements is.
     std::optional<osg::Vec3d> eyeAhead() const;
     /// The eye before the affine map of all that is within `stretch` of a ball; empty where there is no such map.
     std::optional<osg::Vec3d> eyeBefore(const Ball& ball, double stretch) const;
-    /// The longest part of a line of sight from a place on a cap to the sphere.
-    double stretchWithin(const Cap& cap, const osg::Vec3d& eye) const;
+    /// The longest part of a line of sight from a place on a cap to the unit sphere. `highest`: the largest distance of ground from its
+    /// center.
+    static double stretchWithin(const Cap& cap, const osg::Vec3d& eye, double highest);
 
     const DeformationChain* _chain = nullptr;
     osg::Vec3d _eye;
@@ -79,9 +92,9 @@ private:
     osg::Vec3d _axis;            ///< of the globe, a unit vector
     double _equator = 0.0;       ///< the radii of the ellipsoid, or of what vertical movements make of it
     double _polar = 0.0;
-    double _flat = 0.0;    ///< acos(undeformed sphere / equator)
-    double _inner = 0.0;   ///< the deformed sphere's radius
-    double _highest = 0.0; ///< the largest distance of deformed ground from the center
+    double _flat = 0.0;   ///< acos(the sphere of createHorizonCulling() / equator)
+    double _lowest = 0.0; ///< the heights of the deformed ground, metres; not above 0 and not below it
+    double _highest = 0.0;
     double _slack =
         0.0; ///< how far a vertical movement goes sideways at most, as seen from the center: an angle
 };
