@@ -50,6 +50,9 @@ struct Hull
 {
     std::vector<osg::Vec3d> points;
     double margin = 0.0;
+    /// How far a point of it may lie from the deformed box, metres, beside the margin. The hulls of the box' halves, which have
+    /// less of either, may then tell more.
+    double slack = 0.0;
 };
 
 /** A deformation for one camera and one drawn frame: a function of eye space, and the bounds that culling needs.

@@ -221,7 +221,7 @@ void DeformationChain::bound(const EyeBox& box, Hull& hull, double fineness) con
 {
     if (_snapshots.empty())
     {
-        hull.margin = 0.0;
+        hull.margin = hull.slack = 0.0;
         box.corners(hull.points);
         return;
     }
@@ -256,6 +256,7 @@ double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoi
             return ball.radius + *distance / (detail * snapshot->detail(current));
         detail *= snapshot->detail(current) * snapshot->lipschitz(current);
         current = bound && _snapshots.size() == 1 ? *bound : snapshot->bound(current);
+        hull.slack = 0.0;
     }
     const double distance = (current.center - viewPoint).length();
     if (detail == 1.0 && current.radius == ball.radius) return distance;

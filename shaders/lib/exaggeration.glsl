@@ -30,24 +30,39 @@ GEOFX_INLINE Vector3 geofx_exaggerationGradient(geofx_Exaggeration view, Positio
     return view.up + view.curvature * (q + view.flattening * dot(q, view.axis) * view.axis);
 }
 
-// Height above the plane or ellipsoid.
-GEOFX_INLINE Length geofx_exaggerationHeight(geofx_Exaggeration view, Position position)
+// The vertical through a position.
+struct geofx_Vertical
+{
+    Vector3 gradient; // as above
+    Number steepness; // its length; at least 0.1, since a point near the Earth's center has no useful height
+    Length height;    // above the plane or ellipsoid
+};
+
+GEOFX_INLINE geofx_Vertical geofx_exaggerationVertical(geofx_Exaggeration view, Position position)
 {
     Vector3 q = position + view.height * view.up;
     Length along = dot(q, view.axis);
     Length value = 2 * (dot(position, view.up) + view.height) +
                    view.curvature * (dot(q, q) + view.flattening * along * along);
-    Number gradient = length(geofx_exaggerationGradient(view, position));
-    // A point near the Earth's center has no useful height.
     Number surface = sqrt(max(1 + value * view.scale, Number(0.01)));
-    return value / (max(gradient, Number(0.1)) * (1 + 1 / surface));
+    geofx_Vertical vertical;
+    vertical.gradient = geofx_exaggerationGradient(view, position);
+    vertical.steepness = max(length(vertical.gradient), Number(0.1));
+    vertical.height = value / (vertical.steepness * (1 + 1 / surface));
+    return vertical;
+}
+
+// Height above the plane or ellipsoid.
+GEOFX_INLINE Length geofx_exaggerationHeight(geofx_Exaggeration view, Position position)
+{
+    return geofx_exaggerationVertical(view, position).height;
 }
 
 GEOFX_INLINE Position geofx_exaggerate(geofx_Exaggeration view, Position position)
 {
-    Vector3 gradient = geofx_exaggerationGradient(view, position);
-    Length lift = (view.factor - 1) * (geofx_exaggerationHeight(view, position) - view.base);
-    return position + lift / max(length(gradient), Number(0.1)) * gradient;
+    geofx_Vertical vertical = geofx_exaggerationVertical(view, position);
+    Length lift = (view.factor - 1) * (vertical.height - view.base);
+    return position + lift / vertical.steepness * vertical.gradient;
 }
 
 // The inverse, by Newton's method. The derivative is that of a sphere: `factor` along the vertical, and across it the
@@ -58,13 +73,12 @@ GEOFX_INLINE Position geofx_unexaggerate(geofx_Exaggeration view, Position posit
     Position original = position;
     for (int i = 0; i < 8; ++i)
     {
-        Vector3 gradient = geofx_exaggerationGradient(view, original);
-        Number steepness = max(length(gradient), Number(0.1));
-        Vector3 up = gradient / steepness;
-        Length lift = (view.factor - 1) * (geofx_exaggerationHeight(view, original) - view.base);
+        geofx_Vertical vertical = geofx_exaggerationVertical(view, original);
+        Vector3 up = vertical.gradient / vertical.steepness;
+        Length lift = (view.factor - 1) * (vertical.height - view.base);
         Position error = original + lift * up - position;
         Length excess = dot(error, up);
-        Number spread = max(1 + lift * view.curvature / steepness, Number(0.1));
+        Number spread = max(1 + lift * view.curvature / vertical.steepness, Number(0.1));
         original -= (error - excess * up) / spread + excess / view.factor * up;
     }
     return original;

@@ -57,13 +57,14 @@ GEOFX_INLINE Number geofx_arcStretch(Number cosine)
 // (x, s, height) of a position, on the ground.
 GEOFX_INLINE Position geofx_panoramaGround(geofx_Panorama view, Position position)
 {
-    Length height = geofx_exaggerationHeight(view.globe, position);
-    Position foot = geofx_exaggerate(view.globe, position);
+    geofx_Vertical vertical = geofx_exaggerationVertical(view.globe, position);
+    Position foot = position - vertical.height / vertical.steepness * vertical.gradient;
     Number steepness = dot(normalize(geofx_exaggerationGradient(view.globe, foot)), view.globe.up);
     Number stretch = geofx_arcStretch(steepness);
     // The other side of the Earth must lie farther away than anything on this side.
     Length behind = view.globe.curvature > 0 ? max(-steepness, Number(0)) * 20 / view.globe.curvature : Length(0);
-    return Position(stretch * dot(foot, view.right), stretch * dot(foot, view.forward) + behind, height);
+    return Position(stretch * dot(foot, view.right), stretch * dot(foot, view.forward) + behind,
+                    vertical.height);
 }
 
 // (x, s, height) of a position.
@@ -142,12 +143,17 @@ GEOFX_INLINE Number geofx_panoramaArch(geofx_Panorama view, Number x)
     return view.arch * (1 - cos(within * quarter) + (abs(x) - within) * quarter);
 }
 
+// n of a place, without what keeps it out of a cylinder's picture.
+GEOFX_INLINE Length geofx_panoramaDepth(geofx_Panorama view, Length s)
+{
+    return s > 0 ? view.nearest + s : view.nearest * view.nearest / (view.nearest - s);
+}
+
 // The point (x, y) of the picture and n, of a place.
 GEOFX_INLINE Position geofx_panoramaPicture(geofx_Panorama view, Position place)
 {
     Length side = place.x;
-    Length n = place.y > 0 ? view.nearest + place.y
-                           : view.nearest * view.nearest / (view.nearest - place.y);
+    Length n = geofx_panoramaDepth(view, place.y);
     if (view.cylinder.ring > 0)
     {
         Vector2 shown = geofx_cylinderShown(view.cylinder, Vector2(place.x, place.y));

@@ -499,64 +499,124 @@ bool PanoramaSnapshot::hides(const Ball& ball, const osg::Vec2d& room) const
                1.0 - beside - room.y();
 }
 
-bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
+bool PanoramaSnapshot::placesOf(const EyeBox& box, const Extent& extent, Places& places) const
 {
-    const Ball ball = box.ball();
-    if (hides(ball, room)) return true;
-    if (_view.plain > 0.0) return false;
-    const Extent extent = extentOf(ball);
     if (extent.turned > mostTurned || extent.cylinder.leavesPicture) return false;
     // Places within the box lie between those of its corners, except for the ground's curve.
-    glm::dvec3 bent(0.0);
+    places.bent = glm::dvec3(0.0);
     const double stretched = extent.stretch * extent.stretch;
     for (const osg::Vec3d& half : box.half)
     {
         const double ground = extent.curvature, square = half.length2() / 2.0;
-        bent.x += (extent.cylinder.sideStretch * ground + extent.cylinder.sideCurvature * stretched) * square;
-        bent.y += (ground + extent.cylinder.curvature * stretched) * square;
-        bent.z += ground * square;
+        places.bent.x +=
+            (extent.cylinder.sideStretch * ground + extent.cylinder.sideCurvature * stretched) * square;
+        places.bent.y += (ground + extent.cylinder.curvature * stretched) * square;
+        places.bent.z += ground * square;
     }
-    glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+    places.low = glm::dvec3(HUGE_VAL);
+    places.high = glm::dvec3(-HUGE_VAL);
     for (int corner = 0; corner < 8; ++corner)
     {
         osg::Vec3d position = box.center;
         for (int axis = 0; axis < 3; ++axis)
             position += box.half[axis] * (corner & (1 << axis) ? 1.0 : -1.0);
         const glm::dvec3 place = glsl::geofx_panoramaPlace(_view, toGlm(position));
-        low = glm::min(low, place - bent);
-        high = glm::max(high, place + bent);
+        places.low = glm::min(places.low, place - places.bent);
+        places.high = glm::max(places.high, place + places.bent);
     }
-    if (low.y > faded()) return true;
-    if (high.y > _view.end) return false;
-    const double middle = _view.cylinder.ring * _view.cylinder.middle;
-    const double side =
-        (_view.cylinder.ring > 0.0 ? _view.across * _view.cylinder.ring * _view.cylinder.halfArc : beside) +
-        room.x();
-    if (_view.across * (low.x - middle) > side || _view.across * (high.x - middle) < -side) return true;
+    return true;
+}
 
+void PanoramaSnapshot::pictureOf(const Places& places, glm::dvec3& low, glm::dvec3& high) const
+{
+    // Beyond the end, places go to the middle.
+    low.x = _view.across * places.low.x;
+    high.x = _view.across * places.high.x;
+    if (places.high.y > _view.end)
+    {
+        low.x = std::min(low.x, 0.0);
+        high.x = std::max(high.x, 0.0);
+    }
     // Heights and Eq. 1 move a place up or down in the picture.
     // Their scale changes one way up to the horizon, and falls behind it.
     double least = HUGE_VAL, most = -HUGE_VAL;
-    for (const double s : {low.y, std::clamp(_view.horizon, low.y, high.y), high.y})
+    for (const double s :
+         {places.low.y, std::clamp(_view.horizon, places.low.y, places.high.y), places.high.y})
     {
-        for (const double widthAt : {low.y, high.y})
+        for (const double widthAt : {places.low.y, places.high.y})
         {
             const double lift = glsl::geofx_profileLift(_view.lift, _view.liftGrowth, s / _view.horizon) *
                                 glsl::geofx_cylinderWidth(_view.cylinder, widthAt) *
                                 glsl::geofx_panoramaFade(_view, s);
-            for (const double height : {low.z, high.z})
+            for (const double height : {places.low.z, places.high.z})
             {
                 least = std::min(least, lift * (height - _view.base));
                 most = std::max(most, lift * (height - _view.base));
             }
         }
     }
-    const double top = _view.along * glsl::geofx_panoramaRise(_view, high.y) - 1.0 + most;
-    if (top < -beside - room.y()) return true;
-    const double farthest = _view.across * std::max(std::abs(low.x), std::abs(high.x));
-    const double foot = _view.along * glsl::geofx_panoramaRise(_view, low.y) - 1.0 + least -
-                        glsl::geofx_panoramaArch(_view, farthest);
-    return foot > beside + room.y();
+    const double farthest = std::max(std::abs(low.x), std::abs(high.x));
+    const double nearest = low.x * high.x <= 0.0 ? 0.0 : std::min(std::abs(low.x), std::abs(high.x));
+    double lowered = glsl::geofx_panoramaArch(_view, nearest);
+    double lowest = glsl::geofx_panoramaArch(_view, farthest);
+    if (lowered > lowest) std::swap(lowered, lowest);
+    low.y = _view.along * glsl::geofx_panoramaRise(_view, places.low.y) - 1.0 + least - lowest;
+    high.y = _view.along * glsl::geofx_panoramaRise(_view, places.high.y) - 1.0 + most - lowered;
+    low.z = glsl::geofx_panoramaDepth(_view, places.low.y);
+    high.z = glsl::geofx_panoramaDepth(_view, places.high.y);
+}
+
+bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
+{
+    const Ball ball = box.ball();
+    if (hides(ball, room)) return true;
+    if (_view.plain > 0.0) return false;
+    Places places;
+    if (!placesOf(box, extentOf(ball), places)) return false;
+    if (places.low.y > faded()) return true;
+    const double middle = _view.cylinder.ring * _view.cylinder.middle;
+    const double side =
+        (_view.cylinder.ring > 0.0 ? _view.across * _view.cylinder.ring * _view.cylinder.halfArc : beside) +
+        room.x();
+    glm::dvec3 low, high;
+    pictureOf(places, low, high);
+    return low.x - _view.across * middle > side || high.x - _view.across * middle < -side ||
+           high.y < -beside - room.y() || low.y > beside + room.y();
+}
+
+void PanoramaSnapshot::boundBox(const EyeBox& box, Hull& hull, double fineness) const
+{
+    Places places;
+    if (_view.plain * _view.mirrored > 0.0 || !placesOf(box, extentOf(box.ball()), places))
+    {
+        DeformationSnapshot::boundBox(box, hull, fineness);
+        return;
+    }
+    glm::dvec3 low, high;
+    pictureOf(places, low, high);
+    hull.points.clear();
+    hull.margin = 0.0;
+    hull.slack = glm::length(places.bent);
+    // A point of eye space is linear in each of a picture's x, y and n, so the ends of their ranges bound it.
+    for (const double x : {low.x, high.x})
+    {
+        for (const double y : {low.y, high.y})
+        {
+            for (const double n : {low.z, high.z})
+                hull.points.push_back(toOsg(glsl::geofx_panoramaEye(_view, {x, y, n})));
+        }
+    }
+    if (!(_view.plain > 0.0)) return;
+    // A mean of two points, each within a hull, lies within the hull of the means of their points.
+    std::vector<osg::Vec3d> corners;
+    box.corners(corners);
+    const std::vector<osg::Vec3d> drawn = hull.points;
+    hull.points.clear();
+    for (const osg::Vec3d& point : drawn)
+    {
+        for (const osg::Vec3d& corner : corners)
+            hull.points.push_back(point + (corner - point) * _view.plain);
+    }
 }
 
 /// Widths get smaller with the distance. Ways from the base to the horizon do so by the curve alone.

@@ -47,6 +47,7 @@ public:
     }
     Reach reach(const Ball&) const override { return Reach::Curved; }
     double lipschitz(const Ball& ball) const override;
+    void boundBox(const EyeBox& box, Hull& hull, double fineness) const override;
     Sag sag(const Ball& ball, const osg::Vec3d& edge) const override;
     double longestEdge(const Ball& ball, double tolerance) const override;
     bool hides(const Ball& ball, const osg::Vec2d& room) const override;
@@ -72,6 +73,16 @@ private:
     double faded() const;
     struct Extent;
     Extent extentOf(const Ball& ball) const;
+    /// The ranges of the places (x, s, height) in a box, metres.
+    struct Places
+    {
+        glm::dvec3 low, high;
+        glm::dvec3 bent; ///< by how much they are wider than those of the box' corners
+    };
+    /// False where places have no such ranges.
+    bool placesOf(const EyeBox& box, const Extent& extent, Places& places) const;
+    /// The ranges of a picture's x, y and n.
+    void pictureOf(const Places& places, glm::dvec3& low, glm::dvec3& high) const;
     double ownStretch(const Extent& extent) const;
     double distanceAround(const Extent& extent) const;
     osg::Vec3d undeformMixed(const osg::Vec3d& position) const;

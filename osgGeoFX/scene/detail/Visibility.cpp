@@ -89,7 +89,7 @@ bool Visibility::outOfSight(const DeformationChain& chain, const EyeBox& box, Ma
     if (misses(chain, box, planes)) return true;
     // A margin that is small beside the box would not become much smaller.
     constexpr double loose = 0.03;
-    if (halvings == 0 || _hull.margin < loose * box.ball().radius) return false;
+    if (halvings == 0 || _hull.margin + _hull.slack < loose * box.ball().radius) return false;
     const osg::Vec3d* longest =
         std::max_element(box.half, box.half + 3,
                          [](const osg::Vec3d& a, const osg::Vec3d& b) { return a.length2() < b.length2(); });
