@@ -46,10 +46,15 @@ public:
         // The derivatives of the vertical and of the height are 10 k and 11 at most, as far as they are followed.
         if (deep(ball))
             return 1.0 + std::abs(_view.factor - 1.0) * 11.0 + 10.0 * _view.curvature * farthest(ball);
-        // Horizontally (R + factor·h)/(R + h) on a globe, and a little for the turn of the vertical.
+        return std::max(1.0, _view.factor) * groundStretch(ball);
+    }
+    double groundStretch(const Ball& ball) const override
+    {
+        if (deep(ball)) return lipschitz(ball);
+        // (R + factor·h)/(R + h) on a globe, and a little for the turn of the vertical.
         const double lift =
             std::abs(_view.factor - 1.0) * (std::abs(height(ball.center) - _view.base) + ball.radius);
-        return std::max(1.0, _view.factor) * (1.0 + 1.1 * lift * _view.curvature);
+        return 1.0 + 1.1 * lift * _view.curvature;
     }
     Ball bound(const Ball& ball) const override
     {

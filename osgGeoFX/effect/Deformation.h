@@ -90,6 +90,8 @@ public:
     virtual Reach reach(const Ball& ball) const = 0;
     /// The largest factor by which a distance within a sphere grows (a Lipschitz constant); at least 1.
     virtual double lipschitz(const Ball& ball) const = 0;
+    /// That factor for distances along the ground; at least 1. By default it is lipschitz().
+    virtual double groundStretch(const Ball& ball) const { return lipschitz(ball); }
     /// A bounding sphere of a deformed sphere. The default follows from roughly(), roughness(), reach() and
     /// lipschitz(). Override it only for speed.
     virtual Ball bound(const Ball& ball) const;
@@ -134,8 +136,8 @@ public:
     /// fewer boxes. True by default.
     virtual bool looksAtBoxes() const { return true; }
     /// The deformed height of a position at `height`, both above the ground's zero height, metres, where the deformation moves
-    /// each position along its vertical, by a continuous function of its height that never falls. Empty, the default, for other
-    /// deformations. Culling derives the horizon of the deformed globe from it.
+    /// each position along its vertical, by a linear function of its height that never falls. Empty, the default, for other
+    /// deformations. Culling derives the horizon of the deformed globe from it, and how far the ground moves.
     virtual std::optional<double> movedHeight([[maybe_unused]] double height) const { return std::nullopt; }
     /// A sentence that tells why something in this box cannot be drawn well; empty where it can. The scene prints it
     /// once, as a warning.

@@ -209,6 +209,33 @@ double DeformationChain::longestEdge(const Ball& ball) const
     return longest;
 }
 
+double DeformationChain::verticalMovement(double lowest, double highest) const
+{
+    double movement = 0.0;
+    for (const auto& snapshot : _snapshots)
+    {
+        const std::optional<double> low = snapshot->movedHeight(lowest),
+                                    high = snapshot->movedHeight(highest);
+        if (!low || !high) continue;
+        movement += std::max(std::abs(*low - lowest), std::abs(*high - highest));
+        lowest = *low;
+        highest = *high;
+    }
+    return movement;
+}
+
+bool DeformationChain::movesVertically(const Ball& ball) const
+{
+    Ball current = ball;
+    for (const auto& snapshot : _snapshots)
+    {
+        if (snapshot->reach(current) == DeformationSnapshot::Reach::Identity) continue;
+        if (!snapshot->movedHeight(0.0)) return false;
+        current = snapshot->bound(current);
+    }
+    return true;
+}
+
 Ball DeformationChain::bound(const Ball& ball) const
 {
     Ball result = ball;
@@ -229,8 +256,14 @@ void DeformationChain::bound(const EyeBox& box, Hull& hull, double fineness) con
     for (std::size_t i = 0; i < _snapshots.size(); ++i)
     {
         if (i > 0) current = around(hull, current);
+        hull.slack = 0.0;
         _snapshots[i]->boundBox(current, hull, fineness);
     }
+}
+
+double DeformationChain::growthOf(const DeformationSnapshot& snapshot, const Ball& ball) const
+{
+    return _ownTiles ? snapshot.lipschitz(ball) : snapshot.groundStretch(ball);
 }
 
 double DeformationChain::detail(const Ball& ball) const
@@ -239,7 +272,7 @@ double DeformationChain::detail(const Ball& ball) const
     double detail = 1.0;
     for (const auto& snapshot : _snapshots)
     {
-        detail *= snapshot->detail(current) * snapshot->lipschitz(current);
+        detail *= snapshot->detail(current) * growthOf(*snapshot, current);
         current = snapshot->bound(current);
     }
     return detail;
@@ -254,9 +287,8 @@ double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoi
         if (snapshot->reach(current) == DeformationSnapshot::Reach::Identity) continue;
         if (const std::optional<double> distance = snapshot->viewDistance(current))
             return ball.radius + *distance / (detail * snapshot->detail(current));
-        detail *= snapshot->detail(current) * snapshot->lipschitz(current);
+        detail *= snapshot->detail(current) * growthOf(*snapshot, current);
         current = bound && _snapshots.size() == 1 ? *bound : snapshot->bound(current);
-        hull.slack = 0.0;
     }
     const double distance = (current.center - viewPoint).length();
     if (detail == 1.0 && current.radius == ball.radius) return distance;

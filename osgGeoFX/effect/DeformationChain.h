@@ -29,7 +29,8 @@ public:
         _snapshots.push_back(std::move(snapshot));
     }
     /// Sets the values of Ground::tileEdge and Ground::tileError, which lodLimit() needs. `ownTiles`: whether they are
-    /// those of the kit's tiles only; otherwise they hold for any node with two levels.
+    /// those of the kit's tiles only; otherwise they hold for any node with two levels. The kit's tiles have levels by the errors of
+    /// their heights. Those of other engines have them by the sizes of their textures, which vertical movements do not change.
     void setTiles(double edge, double error, bool ownTiles = true)
     {
         _tileEdge = edge;
@@ -59,6 +60,11 @@ public:
     bool isBeyond(const osg::Vec3d& position) const;
     /// Whether hides() or a frame's complaint() can ever give an answer.
     bool looksAtBoxes() const { return _looksAtBoxes; }
+    /// How far vertical movements (DeformationSnapshot::movedHeight) move ground at most that lies between two heights above the zero
+    /// height, metres.
+    double verticalMovement(double lowest, double highest) const;
+    /// Whether nothing but vertical movements moves what is in a sphere.
+    bool movesVertically(const Ball& ball) const;
     /// A bounding sphere of a deformed sphere.
     Ball bound(const Ball& ball) const;
     /// A hull around a deformed box. `hull` receives the result; callers reuse it for speed. `fineness` is the largest
@@ -81,6 +87,8 @@ protected:
     ~DeformationChain() override;
 
 private:
+    /// How much larger the error of a tile becomes that levels of detail go by.
+    double growthOf(const DeformationSnapshot& snapshot, const Ball& ball) const;
     double blockLimit(const osg::LOD& node, const Ball& ball) const;
     double longestEdge(const Ball& ball) const;
 

@@ -257,6 +257,30 @@ TEST(DeformationMeasures, BlocksTakeTheCoarsestMeshWhoseEdgesAreShortEnough)
     EXPECT_EQ(nothing->lodLimit(*blockOf({1e3, 1e4}), {osg::Vec3d(0.0, 0.0, -10.0), 1.0}), HUGE_VAL);
 }
 
+// An engine's tile with doubled heights is no larger, and no finer one is drawn for it.
+TEST(DeformationMeasures, HeightsChangeTheLevelsOfTheKitsTilesAlone)
+{
+    forSamples(200,
+               [](Random& random)
+               {
+                   const CameraPose pose = randomCommonPose(random);
+                   const osg::ref_ptr<VerticalExaggeration> effect = new VerticalExaggeration;
+                   const double factor = random.uniform(2.0, 5.0);
+                   effect->setFactor(factor);
+                   const osg::ref_ptr<DeformationChain> chain = new DeformationChain;
+                   const auto snapshot = effect->snapshot(pose.view());
+                   chain->add(snapshot);
+                   const Ball ball{randomPointFor(*snapshot, pose.view(), random), 100.0};
+                   chain->setTiles(0.0, 0.0, true);
+                   const double own = chain->detail(ball);
+                   EXPECT_GE(own, factor);
+                   chain->setTiles(0.0, 0.0, false);
+                   EXPECT_NEAR(chain->detail(ball), own / factor, 1e-9);
+                   EXPECT_EQ(chain->detail(ball), snapshot->groundStretch(ball));
+                   if (!pose.globe) EXPECT_EQ(chain->detail(ball), 1.0);
+               });
+}
+
 TEST(DeformationMeasures, TilesOfOthersBecomeFinerAsThoseOfTheKit)
 {
     // The finer level of the kit's tiles comes last, that of others as their makers like it.
