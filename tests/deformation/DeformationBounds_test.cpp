@@ -201,6 +201,39 @@ TEST(DeformationBounds, BallsHoldWhatAChainMakesOfThem)
     expectBallsHold(3);
 }
 
+TEST(DeformationBounds, VerticalMovementsAreNoLonger)
+{
+    int stays = 0, moves = 0;
+    forRandomCases(sampleCount(), 2,
+                   [&](const Case& found, Random& random)
+                   {
+                       const Ball ball = randomBall(found, random);
+                       const osg::Matrixd toWorld = osg::Matrixd::inverse(found.view.modelView);
+                       std::vector<Vec3d> points;
+                       double lowest = HUGE_VAL, highest = -HUGE_VAL;
+                       for (int i = 0; i < 10; ++i)
+                       {
+                           points.push_back(randomPointIn(ball, random));
+                           const Vec3d world = points.back() * toWorld;
+                           double latitude = 0.0, longitude = 0.0, height = world.z();
+                           if (found.view.ground.ellipsoid)
+                               found.view.ground.ellipsoid->convertXYZToLatLongHeight(
+                                   world.x(), world.y(), world.z(), latitude, longitude, height);
+                           lowest = std::min(lowest, height);
+                           highest = std::max(highest, height);
+                       }
+                       if (!found.chain->movesVertically(ball)) return;
+                       const double movement = found.chain->verticalMovement(lowest, highest);
+                       ++(movement > 0.0 ? moves : stays);
+                       for (const Vec3d& point : points)
+                           EXPECT_LE((found.chain->deform(point) - point).length(),
+                                     movement * (1.0 + 1e-6) + 1e-12 * scaleOf(found, point))
+                               << "radius " << ball.radius << ", from " << lowest << " to " << highest;
+                   });
+    EXPECT_GT(stays, sampleCount() / 50);
+    EXPECT_GT(moves, sampleCount() / 50);
+}
+
 TEST(DeformationBounds, HullsHoldWhatOneDeformationMakesOfABox)
 {
     expectBoxesHold(1);

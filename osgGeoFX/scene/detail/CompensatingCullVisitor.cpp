@@ -87,10 +87,21 @@ CompensatingCullVisitor::Lens::~Lens()
     if (!_proxies && !_raises) return;
     _visitor.setCullingMode(_formerMode);
     _visitor.popModelViewMatrix();
-    if (_raises) _visitor.popReferenceViewPoint();
+    if (_raises)
+    {
+        _visitor.popReferenceViewPoint();
+        _visitor.showDepthsOfGround();
+    }
     if (!_proxies) return;
     _visitor.popProjectionMatrix();
     _visitor._proxied = !_visitor._proxied;
+}
+
+void CompensatingCullVisitor::showDepthsOfGround()
+{
+    if (!_task.compensate || !std::isfinite(_farthestGround) || !(_farthestGround > 0.0)) return;
+    _computed_znear = std::min(_computed_znear, _farthestGround * getNearFarRatio());
+    _computed_zfar = std::max(_computed_zfar, _farthestGround);
 }
 
 CompensatingCullVisitor::Scope::Scope(CompensatingCullVisitor& visitor, const osg::Node& node)
@@ -288,9 +299,9 @@ void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
         // Found by the base class, as OSG finds it.
         computeNearPlane();
         if (_computed_zfar >= _computed_znear) _drawables.depths().include(_computed_znear, _computed_zfar);
-        _computed_znear = static_cast<value_type>(FLT_MAX);
-        _computed_zfar = -static_cast<value_type>(FLT_MAX);
     }
+    _computed_znear = static_cast<value_type>(FLT_MAX);
+    _computed_zfar = -static_cast<value_type>(FLT_MAX);
     DepthRange& depths = _drawables.depths();
     depths.settle();
     const bool found = _outerNearFar != DO_NOT_COMPUTE_NEAR_FAR && depths.farthest() >= depths.nearest();

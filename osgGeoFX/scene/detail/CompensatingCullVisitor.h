@@ -19,6 +19,7 @@
 #include <osgUtil/RenderLeaf>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -324,8 +325,13 @@ private:
     bool belowHorizon(const osg::LOD& node);
     void beginPatches(osg::Program& program, const osg::Viewport& viewport);
     void pushMatrices(osgUtil::CullVisitor& outer);
+    /// Lets an engine read the near and far planes of its undeformed terrain, as OSG finds them in the bounds of a globe. Those of
+    /// the picture are found otherwise.
+    void showDepthsOfGround();
     /// Where everything is above the horizon, for those who look for the view point.
     osg::Vec3 raisedViewPoint() const;
+    /// The tangents of the angles to the picture's left, right, bottom and top, seen from the eye; infinite where there are none.
+    std::array<double, 4> pictureSides() const;
     /// Sets the proxy frustum, and returns the view point that goes with it.
     osg::Vec3 setProxy(const osg::Matrixd& modelView);
     /// From where levels of detail are chosen, in the view's eye space.
@@ -372,6 +378,7 @@ private:
         _proxy;                             ///< that of the picture, and the one that engines cull by
     bool _proxied = false;                  ///< whether the second one is in force
     std::pair<double, double> _proxyDepths; ///< near and far of the ground that is shown
+    double _farthestGround = HUGE_VAL;      ///< how far ahead it lies at most before it is deformed
     osg::Vec3 _highPoint;                   ///< from which all that is shown is above the horizon
     CullingMode _outerCullingMode = 0;
     ComputeNearFarMode _outerNearFar = DO_NOT_COMPUTE_NEAR_FAR;

@@ -214,23 +214,41 @@ bool CompensatingCullVisitor::boxOutOfSight(const EyeBox& box)
     return _horizon.hides(box.ball()) || _sight.outOfSight(*_task.chain, box, _sight.all());
 }
 
+std::array<double, 4> CompensatingCullVisitor::pictureSides() const
+{
+    std::array<double, 4> sides;
+    sides.fill(HUGE_VAL);
+    const osg::Matrixd& p = _sight.picture().projection();
+    const bool upright = p(0, 1) == 0.0 && p(1, 0) == 0.0 && p(0, 3) == 0.0 && p(1, 3) == 0.0 &&
+                         p(2, 3) < 0.0 && p(3, 3) == 0.0 && p(3, 0) == 0.0 && p(3, 1) == 0.0;
+    if (_task.image || !upright) return sides;
+    for (int axis = 0; axis < 2; ++axis)
+    {
+        const double scale = std::abs(p(axis, axis));
+        const double low = (-p(2, 3) - p(2, axis)) / scale, high = (-p(2, 3) + p(2, axis)) / scale;
+        sides[static_cast<std::size_t>(2 * axis)] = p(axis, axis) > 0.0 ? low : high;
+        sides[static_cast<std::size_t>(2 * axis + 1)] = p(axis, axis) > 0.0 ? high : low;
+    }
+    return sides;
+}
+
 osg::Vec3 CompensatingCullVisitor::setProxy(const osg::Matrixd& modelView)
 {
     const ViewGeometry& view = *_task.view;
     const osg::Vec3d up = _task.image ? osg::Matrixd::transform3x3(view.up, _task.image->toEye) : view.up;
+    const Ground& ground = view.ground;
+    const double movement =
+        ground.heightsKnown ? _task.chain->verticalMovement(ground.minHeight, ground.maxHeight) : HUGE_VAL;
     const ProxyFrustum::Terrain terrain = {
-        _task.bound, modelView, _task.image ? _task.image->toView : osg::Matrixd(), up, view.ground};
+        _task.bound,    modelView, _task.image ? _task.image->toView : osg::Matrixd(), up, view.ground,
+        pictureSides(), movement};
     const ProxyFrustum proxy(
         terrain, [this](const EyeBox& box) { return boxOutOfSight(box); },
-        [this](const EyeBox& box)
-        {
-            const Ball ball = _task.chain->bound(box.ball());
-            const osg::Vec4d along = _sight.depths();
-            const double depth = along * osg::Vec4d(ball.center, 1.0);
-            return std::pair(depth - ball.radius, depth + ball.radius);
-        });
+        [this](const EyeBox& box) { return _sight.depthsOf(*_task.chain, box); },
+        [this](const EyeBox& box) { return _task.chain->movesVertically(box.ball()); });
     _proxy = createOrReuseMatrix(proxy.projection());
     _proxyDepths = proxy.depths();
+    _farthestGround = proxy.farthestGround();
     // Bounds of large boxes are loose. No deformation makes a globe larger than some Earths.
     constexpr double earths = 4.0;
     if (view.ground.ellipsoid)

@@ -35,6 +35,7 @@ public:
     Mask all() const { return (1u << _planes.size()) - 1u; }
     /// Positive on the inner side.
     const std::vector<osg::Vec4d>& planes() const { return _planes; }
+    const osg::Matrixd& projection() const { return _projection; }
 
     /// Removes the planes from the mask that have the whole ball on their inner side.
     Side side(const Ball& ball, Mask& mask) const;

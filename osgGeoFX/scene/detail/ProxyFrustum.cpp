@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <functional>
 
 namespace osgGeoFX
 {
@@ -15,12 +15,14 @@ namespace
 {
 
 /// Steps of refinement, and how small a box becomes, as a share of its distance.
-constexpr int mostSplits = 600;
+constexpr int mostSplits = 300;
 constexpr double fineness = 0.02;
+/// Metres. A smaller box around the eye does not count.
+constexpr double smallest = 10.0;
 /// Directions further off than this are no use in a pyramid.
 constexpr double widest = 50.0;
 /// For rounding in engines that compute in single precision.
-constexpr double margin = 1e-3;
+constexpr double margin = 1e-4;
 
 enum Side : std::size_t
 {
@@ -34,19 +36,14 @@ enum Side : std::size_t
 
 } // namespace
 
-ProxyFrustum::ProxyFrustum(const Terrain& terrain, const OutOfSight& outOfSight, const DepthsOf& depthsOf)
-    : _terrain(terrain), _outOfSight(outOfSight), _depthsOf(depthsOf)
+ProxyFrustum::ProxyFrustum(const Terrain& terrain, const OutOfSight& outOfSight, const DepthsOf& depthsOf,
+                           const MovesVertically& movesVertically)
+    : _terrain(terrain), _outOfSight(outOfSight), _depthsOf(depthsOf), _movesVertically(movesVertically),
+      _shell(terrain.bound, terrain.ground)
 {
-    osg::BoundingBox all;
-    all.expandBy(terrain.bound);
-    if (!terrain.ground.ellipsoid && terrain.ground.heightsKnown)
-    {
-        all.zMin() = std::max(all.zMin(), static_cast<float>(terrain.ground.minHeight));
-        all.zMax() = std::min(all.zMax(), static_cast<float>(terrain.ground.maxHeight));
-    }
     setShapes();
-    const std::optional<Cell> first = all.valid() ? cellOf(all) : std::nullopt;
-    if (first) _cells.push_back(*first);
+    for (const GroundShell::Block& block : _shell.blocks())
+        add(block);
     refine();
     setProjection();
     if (terrain.ground.ellipsoid) setViewPoint();
@@ -63,21 +60,9 @@ std::pair<double, double> ProxyFrustum::depths() const
     return {nearest, farthest};
 }
 
-bool ProxyFrustum::awayFromGround(const osg::BoundingBox& box) const
+double ProxyFrustum::farthestGround() const
 {
-    const Ground& ground = _terrain.ground;
-    if (!ground.ellipsoid || !ground.heightsKnown) return false;
-    const osg::Vec3d middle = box.center();
-    const double radius = static_cast<double>(box.radius());
-    const double length = middle.length();
-    // A surface of one height lies between two spheres.
-    const double least = ground.ellipsoid->getRadiusPolar() + ground.minHeight;
-    const double most = ground.ellipsoid->getRadiusEquator() + ground.maxHeight;
-    if (length + radius < least || length - radius > most) return true;
-    double latitude = 0.0, longitude = 0.0, height = 0.0;
-    ground.ellipsoid->convertXYZToLatLongHeight(middle.x(), middle.y(), middle.z(), latitude, longitude,
-                                                height);
-    return height + radius < ground.minHeight || height - radius > ground.maxHeight;
+    return reachOf(Own)[Far];
 }
 
 void ProxyFrustum::setShapes()
@@ -95,67 +80,76 @@ void ProxyFrustum::setShapes()
     _shapes[Box].parallel = true;
 }
 
-ProxyFrustum::Reach ProxyFrustum::reachOf(const Shape& shape, const osg::BoundingBox& box) const
+ProxyFrustum::Reach ProxyFrustum::reachOf(const Shape& shape, const std::vector<osg::Vec3d>& corners)
 {
     Reach reach;
     reach.fill(-HUGE_VAL);
-    const osg::Matrixd toShape = _terrain.modelView * shape.frame;
-    for (unsigned int i = 0; i < 8; ++i)
+    for (const osg::Vec3d& each : corners)
     {
-        const osg::Vec3d corner = osg::Vec3d(box.corner(i)) * toShape;
+        const osg::Vec3d corner = each * shape.frame;
         const double depth = -corner.z();
-        if (!shape.parallel && !(std::max(std::abs(corner.x()), std::abs(corner.y())) < widest * depth))
-        {
-            reach.fill(HUGE_VAL);
-            return reach;
-        }
+        const bool ahead =
+            shape.parallel || std::max(std::abs(corner.x()), std::abs(corner.y())) < widest * depth;
         const double scale = shape.parallel ? 1.0 : 1.0 / depth;
+        const osg::Vec2d at =
+            ahead ? osg::Vec2d(corner.x() * scale, corner.y() * scale) : osg::Vec2d(HUGE_VAL, HUGE_VAL);
         const Reach ofCorner = {
-            -corner.x() * scale, corner.x() * scale, -corner.y() * scale, corner.y() * scale, -depth, depth};
+            ahead ? -at.x() : HUGE_VAL, at.x(), ahead ? -at.y() : HUGE_VAL, at.y(), -depth, depth};
         for (std::size_t side = 0; side < sides; ++side)
             reach[side] = std::max(reach[side], ofCorner[side]);
     }
     return reach;
 }
 
-std::optional<ProxyFrustum::Cell> ProxyFrustum::cellOf(const osg::BoundingBox& box) const
+void ProxyFrustum::cutToPicture(Reach& own) const
 {
-    if (awayFromGround(box) || _outOfSight(EyeBox::of(box, _terrain.modelView * _terrain.toView)))
-        return std::nullopt;
-    const double size = 2.0 * static_cast<double>(box.radius());
-    const osg::Vec3d middle = osg::Vec3d(box.center()) * _terrain.modelView;
+    const double nearest = -own[Near];
+    if (!(nearest > 0.0) && _terrain.movement > 0.0) return;
+    // What is seen at a depth z from the eye has come from as much as the movement farther to the side, and from as much nearer.
+    const double beside = _terrain.movement > 0.0 ? _terrain.movement / nearest : 0.0;
+    for (std::size_t side = Left; side <= Top; ++side)
+    {
+        const double seen = _terrain.picture[side];
+        own[side] = std::min(own[side], seen + (1.0 + std::abs(seen)) * beside);
+    }
+    own[Near] = std::min(own[Near], 0.0);
+}
+
+void ProxyFrustum::add(const GroundShell::Block& block)
+{
+    const std::optional<EyeBox> box = _shell.boxOf(block);
+    if (!box) return;
+    const auto placed = [](const EyeBox& from, const osg::Matrixd& matrix)
+    {
+        EyeBox to;
+        to.center = from.center * matrix;
+        for (int axis = 0; axis < 3; ++axis)
+            to.half[axis] = osg::Matrixd::transform3x3(from.half[axis], matrix);
+        return to;
+    };
     Cell cell;
-    cell.box = box;
+    cell.block = block;
+    cell.box = placed(*box, _terrain.modelView);
+    const EyeBox inView = placed(cell.box, _terrain.toView);
+    if (_outOfSight(inView)) return;
+    std::vector<osg::Vec3d> corners;
+    cell.box.corners(corners);
     for (std::size_t i = 0; i < shapes; ++i)
-        cell.reach[i] = reachOf(_shapes[i], box);
-    cell.coarseness = size / std::max(middle.length() - 0.5 * size, 0.1 * size);
-    const auto [nearest, farthest] = _depthsOf(EyeBox::of(box, _terrain.modelView * _terrain.toView));
+        cell.reach[i] = reachOf(_shapes[i], corners);
+    if (std::isfinite(_terrain.picture[Left]) && _movesVertically(inView)) cutToPicture(cell.reach[Own]);
+    const double radius = cell.box.ball().radius;
+    const double away = cell.box.center.length() - radius;
+    // No tile is as small as what is around the eye then.
+    if (away < 0.0 && radius < smallest) return;
+    cell.coarseness = 2.0 * radius / std::max(away, 0.2 * radius);
+    const auto [nearest, farthest] = _depthsOf(inView);
     // What is behind the eye does not count, and what cannot be told is to be split.
     cell.depths = {std::isnan(nearest) ? HUGE_VAL : -std::max(nearest, 0.0),
                    std::isnan(farthest) ? HUGE_VAL : farthest};
-    return cell;
+    _cells.push_back(cell);
 }
 
-void ProxyFrustum::split(std::size_t index)
-{
-    const osg::BoundingBox whole = _cells[index].box;
-    const osg::Vec3 size = whole._max - whole._min;
-    int axis = size.x() >= size.y() ? 0 : 1;
-    if (size.z() > size[axis]) axis = 2;
-    const float middle = 0.5f * (whole._min[axis] + whole._max[axis]);
-    osg::BoundingBox low = whole, high = whole;
-    low._max[axis] = middle;
-    high._min[axis] = middle;
-    const std::optional<Cell> first = cellOf(low), second = cellOf(high);
-    if (first)
-        _cells[index] = *first;
-    else
-        std::swap(_cells[index], _cells.back());
-    if (!first) _cells.pop_back();
-    if (second) _cells.push_back(*second);
-}
-
-std::size_t ProxyFrustum::worstCell() const
+std::vector<std::size_t> ProxyFrustum::worstCells() const
 {
     constexpr std::size_t ofShapes = Box * sides, measures = ofShapes + 2;
     const auto reach = [](const Cell& cell, std::size_t measure)
@@ -163,8 +157,9 @@ std::size_t ProxyFrustum::worstCell() const
         return measure < ofShapes ? cell.reach[measure / sides][measure % sides]
                                   : cell.depths[measure - ofShapes];
     };
-    std::size_t worst = 0;
-    for (std::size_t measure = 0; measure < measures; ++measure)
+    std::vector<std::size_t> worst;
+    bool endless = false;
+    for (std::size_t measure = 0; measure < measures && !_cells.empty(); ++measure)
     {
         std::size_t furthest = 0;
         for (std::size_t j = 1; j < _cells.size(); ++j)
@@ -173,18 +168,38 @@ std::size_t ProxyFrustum::worstCell() const
             if (further > 0.0 || (!(further < 0.0) && _cells[j].coarseness > _cells[furthest].coarseness))
                 furthest = j;
         }
-        if (_cells[furthest].coarseness > _cells[worst].coarseness || measure == 0) worst = furthest;
+        if (!(_cells[furthest].coarseness > fineness)) continue;
+        // As long as something has no end on a side, nothing else matters.
+        const bool hasNoEnd = std::isinf(reach(_cells[furthest], measure));
+        if (hasNoEnd && !endless) worst.clear();
+        endless = endless || hasNoEnd;
+        if (hasNoEnd == endless) worst.push_back(furthest);
     }
+    std::sort(worst.begin(), worst.end(), std::greater<>());
+    worst.erase(std::unique(worst.begin(), worst.end()), worst.end());
     return worst;
 }
 
 void ProxyFrustum::refine()
 {
-    for (int step = 0; step < mostSplits && !_cells.empty(); ++step)
+    for (int splits = 0; splits < mostSplits;)
     {
-        const std::size_t worst = worstCell();
-        if (_cells[worst].coarseness <= fineness) break;
-        split(worst);
+        const std::vector<std::size_t> worst = worstCells();
+        if (worst.empty()) break;
+        splits += static_cast<int>(worst.size());
+        std::vector<GroundShell::Block> blocks;
+        for (const std::size_t each : worst)
+        {
+            blocks.push_back(_cells[each].block);
+            std::swap(_cells[each], _cells.back());
+            _cells.pop_back();
+        }
+        for (const GroundShell::Block& block : blocks)
+        {
+            const auto [first, second] = _shell.halvesOf(block);
+            add(first);
+            add(second);
+        }
     }
 }
 
@@ -239,15 +254,16 @@ void ProxyFrustum::setProjection()
 
 void ProxyFrustum::setViewPoint()
 {
-    const osg::Vec3d eye = osg::Vec3d() * osg::Matrixd::inverse(_terrain.modelView);
-    osg::Vec3d up = eye;
-    if (up.normalize() == 0.0) return;
+    const osg::Vec3d center = osg::Vec3d() * _terrain.modelView;
+    osg::Vec3d up = -center;
+    const double height = up.normalize();
+    if (height == 0.0) return;
     // The widest angle at the Earth's center between the eye and what is shown, on a sphere below all ground.
     double angle = 0.0;
     for (const Cell& cell : _cells)
     {
-        const osg::Vec3d middle = cell.box.center();
-        const double length = middle.length(), radius = static_cast<double>(cell.box.radius());
+        const osg::Vec3d middle = cell.box.center - center;
+        const double length = middle.length(), radius = cell.box.ball().radius;
         if (radius >= length) return;
         angle = std::max(angle,
                          std::acos(std::clamp(up * middle / length, -1.0, 1.0)) + std::asin(radius / length));
@@ -255,7 +271,7 @@ void ProxyFrustum::setViewPoint()
     constexpr double most = 1.5;
     if (angle > most) return;
     const double distance = (1.0 + margin) * _terrain.ground.ellipsoid->getRadiusEquator() / std::cos(angle);
-    _viewPoint = up * std::max(distance, eye.length()) * _terrain.modelView;
+    _viewPoint = center + up * std::max(distance, height);
 }
 
 } // namespace osgGeoFX

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/effect/Deformation.h>
 #include <osgGeoFX/effect/ViewGeometry.h>
+#include <osgGeoFX/scene/detail/GroundShell.h>
 
 #include <osg/BoundingSphere>
 #include <osg/Matrixd>
@@ -21,8 +22,8 @@ namespace osgGeoFX
 /** What an undeformed camera would have to see so that nothing is missing in the deformed picture.
 
     Terrain engines cull by what they know: a projection, a modelview matrix and a view point. This class finds the
-    projection and the view point that contain all ground which the deformed picture shows. It starts with a box around the
-    terrain, and leaves out what is out of sight. It splits the boxes that reach furthest, until they are small. So the
+    projection and the view point that contain all ground which the deformed picture shows. It starts with blocks of all
+    ground (GroundShell), and leaves out what is out of sight. It halves the blocks that reach furthest, until they are small. So the
     result is conservative at any time, and tighter with each step. The result is a pyramid with its tip at the eye, or a box if something behind the
     eye is shown. */
 class ProxyFrustum
@@ -35,14 +36,21 @@ public:
         osg::Matrixd toView;       ///< from there to the view's
         osg::Vec3d up;             ///< in the eye space of the camera
         const Ground& ground;
+        /// The tangents of the angles to the picture's left, right, bottom and top, seen from the eye; infinite where there are none.
+        std::array<double, 4> picture;
+        double movement; ///< how far vertical movements move the ground at most, metres
     };
     /// Whether a box, undeformed, in the view's eye space, is out of sight once it is deformed.
     using OutOfSight = std::function<bool(const EyeBox&)>;
 
-    /// The least and the greatest depth that a box has once it is deformed; any numbers, also infinite ones.
+    /// The least and the greatest depth that a box, in the view's eye space, has once it is deformed; any numbers, also infinite ones.
     using DepthsOf = std::function<std::pair<double, double>(const EyeBox&)>;
 
-    ProxyFrustum(const Terrain& terrain, const OutOfSight& outOfSight, const DepthsOf& depthsOf);
+    /// Whether nothing but vertical movements moves the ground in a box, in the view's eye space.
+    using MovesVertically = std::function<bool(const EyeBox&)>;
+
+    ProxyFrustum(const Terrain& terrain, const OutOfSight& outOfSight, const DepthsOf& depthsOf,
+                 const MovesVertically& movesVertically);
 
     /// From the eye space of the camera to clip coordinates.
     const osg::Matrixd& projection() const { return _projection; }
@@ -53,6 +61,8 @@ public:
     /// The least and the greatest depth of the deformed ground that is shown, metres; the first one is the greater one where
     /// nothing is.
     std::pair<double, double> depths() const;
+    /// How far ahead of the eye this ground lies at most before it is deformed, metres; infinite where no pyramid has it.
+    double farthestGround() const;
 
 private:
     static constexpr std::size_t sides = 6;
@@ -72,7 +82,8 @@ private:
     };
     struct Cell
     {
-        osg::BoundingBox box;            ///< in the terrain's frame
+        GroundShell::Block block;
+        EyeBox box;                      ///< in the eye space of the camera
         std::array<Reach, shapes> reach; ///< infinite where a corner does not lie in front of the tip
         double coarseness = 0;           ///< its size over its distance from the eye
         std::array<double, 2>
@@ -80,13 +91,13 @@ private:
     };
 
     void setShapes();
-    std::optional<Cell> cellOf(const osg::BoundingBox& box) const;
-    Reach reachOf(const Shape& shape, const osg::BoundingBox& box) const;
-    bool awayFromGround(const osg::BoundingBox& box) const;
+    void add(const GroundShell::Block& block);
+    static Reach reachOf(const Shape& shape, const std::vector<osg::Vec3d>& corners);
+    /// Cuts off what vertical movements do not bring into the picture.
+    void cutToPicture(Reach& own) const;
     void refine();
-    /// The coarsest one of the cells that reach furthest, by each of several measures.
-    std::size_t worstCell() const;
-    void split(std::size_t index);
+    /// By each of several measures, the coarsest one of the cells that reach furthest, if it is not yet fine; the last one first.
+    std::vector<std::size_t> worstCells() const;
     Reach reachOf(std::size_t shape) const;
     osg::Matrixd projectionOf(std::size_t shape) const;
     void setProjection();
@@ -95,6 +106,8 @@ private:
     const Terrain& _terrain;
     const OutOfSight& _outOfSight;
     const DepthsOf& _depthsOf;
+    const MovesVertically& _movesVertically;
+    const GroundShell _shell;
     std::array<Shape, shapes> _shapes;
     std::vector<Cell> _cells;
     osg::Matrixd _projection;

@@ -5,6 +5,7 @@
 #include <osg/CullingSet>
 
 #include <algorithm>
+#include <cmath>
 
 namespace osgGeoFX
 {
@@ -72,6 +73,19 @@ bool Visibility::outOfSight(const Ball& deformed, Mask& planes, bool mayBeSmall)
            (!mayBeSmall && tooSmall(deformed));
 }
 
+std::pair<double, double> Visibility::depthsOf(const DeformationChain& chain, const EyeBox& box)
+{
+    chain.bound(box, _hull);
+    double nearest = HUGE_VAL, farthest = -HUGE_VAL;
+    for (const osg::Vec3d& point : _hull.points)
+    {
+        const double depth = _depths * osg::Vec4d(point, 1.0);
+        nearest = std::min(nearest, depth - _hull.margin);
+        farthest = std::max(farthest, depth + _hull.margin);
+    }
+    return {nearest, farthest};
+}
+
 bool Visibility::misses(const DeformationChain& chain, const EyeBox& box, Mask planes, double margin)
 {
     chain.bound(box, _hull);
@@ -87,7 +101,7 @@ bool Visibility::outOfSight(const DeformationChain& chain, const EyeBox& box, Ma
     if (side != EyeFrustum::Side::Crossing) return side == EyeFrustum::Side::Outside;
     if (_frustum.holds(deformed.center, planes)) return false;
     if (misses(chain, box, planes)) return true;
-    // A margin that is small beside the box would not become much smaller.
+    // A hull that is tight for its box would not become much tighter.
     constexpr double loose = 0.03;
     if (halvings == 0 || _hull.margin + _hull.slack < loose * box.ball().radius) return false;
     const osg::Vec3d* longest =

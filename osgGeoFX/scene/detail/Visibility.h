@@ -11,6 +11,8 @@
 #include <osg/Vec4d>
 #include <osg/Viewport>
 
+#include <utility>
+
 namespace osgGeoFX
 {
 
@@ -58,6 +60,8 @@ public:
     {
         return _hides && chain.hides(box, _room);
     }
+    /// The least and the greatest depth of a deformed box; any numbers.
+    std::pair<double, double> depthsOf(const DeformationChain& chain, const EyeBox& box);
     /// Whether a point is inside of the planes of a mask.
     bool holds(const osg::Vec3d& deformed, Mask planes) const { return _frustum.holds(deformed, planes); }
     /// Whether the hull of a deformed box misses the picture. Slow. What it holds may reach beyond the box' image by `margin`,
