@@ -83,6 +83,14 @@ public:
         for (const std::string& error : read.errors)
             OSG_WARN << "osgGeoFX: " << error << std::endl;
         if (!map || !read.scene) return false;
+        if (osgEarth::findFirstParentOfType<EffectScene>(map))
+        {
+            OSG_WARN << "osgGeoFX: " << _config.getConfig().referrer()
+                     << ": the map has effects already, so this <geofx> is left out; write all effects into "
+                        "one <geofx>."
+                     << std::endl;
+            return false;
+        }
         _scene = new EffectScene;
         _scene->setName("osgGeoFX scene");
         osgEarth::insertParent(_scene.get(), map);

@@ -4,14 +4,17 @@
 // The extension <geofx> of osgEarth's maps.
 #include "EarthMap.h"
 
+#include <osgEarth/ImageLayer>
 #include <osgEarth/TerrainEngineNode>
 #include <tools/NotifyWatch.h>
 #include <tools/RandomSamples.h>
+#include <tools/ResidentMemory.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <string>
 #include <tuple>
+#include <vector>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -49,6 +52,11 @@ protected:
         return text;
     }
 };
+
+std::string anyEffect(Random& random)
+{
+    return effects[static_cast<std::size_t>(random.integer(0, 5))];
+}
 
 } // namespace
 
@@ -128,6 +136,139 @@ TEST_F(EarthMaps, AFaultIsASentenceAndTheMapIsDrawn)
         << said[0];
     EXPECT_FALSE(scene());
     EXPECT_LE(differing(*draw(10.5, 0.2, 9000.0, 0.0, -32.0), *plain), 20);
+}
+
+TEST_F(EarthMaps, OnlyTheFirstOfTwoBlocksActs)
+{
+    NotifyWatch watch;
+    ASSERT_TRUE(show(extension("<verticalExaggeration factor=\"3\"/>")));
+    const osg::ref_ptr<osg::Image> one = draw(10.5, 0.2, 9000.0, 0.0, -32.0);
+    const std::vector<std::string> said = watch.messagesOf(
+        [&]
+        {
+            EXPECT_TRUE(show(extension("<verticalExaggeration factor=\"3\"/>") + "\n" +
+                             extension("<birdsEyeView/>")));
+        });
+    ASSERT_EQ(said.size(), 1u) << ::testing::PrintToString(said);
+    EXPECT_NE(said[0].find("this <geofx> is left out"), std::string::npos) << said[0];
+    EXPECT_NE(said[0].find(file()), std::string::npos) << said[0];
+    ASSERT_TRUE(scene());
+    EXPECT_EQ(scene()->getNumEffects(), 1u);
+    EXPECT_LE(differing(*draw(10.5, 0.2, 9000.0, 0.0, -32.0), *one), 20);
+    map().clearExtensions();
+    EXPECT_FALSE(scene());
+}
+
+TEST_F(EarthMaps, HeightsUpsideDownAreASentence)
+{
+    NotifyWatch watch;
+    ASSERT_TRUE(show(""));
+    const osg::ref_ptr<osg::Image> plain = draw(10.5, 0.2, 9000.0, 0.0, -32.0);
+    const std::vector<std::string> said = watch.messagesOf(
+        [&]
+        {
+            EXPECT_TRUE(show("<geofx version=\"1\"><terrain><engine minHeight=\"1100\" maxHeight=\"-10\"/>"
+                             "</terrain><effects><birdsEyeView/></effects></geofx>"));
+        });
+    ASSERT_EQ(said.size(), 1u) << ::testing::PrintToString(said);
+    EXPECT_NE(said[0].find(file() + ":5"), std::string::npos) << said[0];
+    EXPECT_NE(said[0].find("minHeight"), std::string::npos) << said[0];
+    EXPECT_FALSE(scene());
+    EXPECT_LE(differing(*draw(10.5, 0.2, 9000.0, 0.0, -32.0), *plain), 20);
+}
+
+TEST_F(EarthMaps, MapsWithoutTerrainAreDrawn)
+{
+    NotifyWatch watch;
+    const std::vector<std::string> said =
+        watch.messagesOf([&] { EXPECT_TRUE(show(extension("<birdsEyeView/>"), "visible=\"false\"")); });
+    EXPECT_TRUE(scene());
+    draw(10.5, 0.2, 9000.0, 0.0, -32.0);
+    EXPECT_LE(said.size(), 1u) << ::testing::PrintToString(said);
+}
+
+// Tiles of the map that goes may be on their way.
+TEST_F(EarthMaps, MapsAreReplacedWhileTilesCome)
+{
+    NotifyWatch watch;
+    const std::vector<std::string> said = watch.messagesOf(
+        [&]
+        {
+            for (int i = 0; i < 12; ++i)
+            {
+                ASSERT_TRUE(show(extension(effects[i % 6])));
+                camera().setViewMatrix(viewFrom(10.5, 0.2, 9000.0 + 100.0 * i, 30.0 * i, -32.0));
+                for (int frame = 0; frame < i; ++frame)
+                    viewer().frame();
+            }
+        });
+    EXPECT_TRUE(said.empty()) << ::testing::PrintToString(said);
+    const osg::ref_ptr<osg::Image> last = draw(10.5, 0.2, 9000.0, 0.0, -32.0);
+    ASSERT_TRUE(show(extension(effects[11 % 6])));
+    EXPECT_LE(differing(*draw(10.5, 0.2, 9000.0, 0.0, -32.0), *last), 20);
+}
+
+// An hour of use with GEOFX_TEST_FULL, a minute without: effects, layers, views and maps come and go.
+TEST_F(EarthMaps, RandomStepsEndWell)
+{
+    Random random(57);
+    NotifyWatch watch;
+    const int steps = sampleCount() / 10;
+    double half = 0.0;
+    const std::vector<std::string> said = watch.messagesOf(
+        [&]
+        {
+            ASSERT_TRUE(show(""));
+            for (int i = 0; i < steps; ++i)
+            {
+                switch (random.integer(0, 7))
+                {
+                case 0:
+                    setProfile(random.integer(0, 1) ? "plate-carre" : "");
+                    ASSERT_TRUE(show(random.integer(0, 1) ? extension(anyEffect(random)) : ""));
+                    break;
+                case 1:
+                case 2:
+                    map().clearExtensions();
+                    ASSERT_TRUE(addExtension(extension(anyEffect(random))));
+                    break;
+                case 3:
+                    map().clearExtensions();
+                    break;
+                case 4:
+                {
+                    std::vector<osg::ref_ptr<osgEarth::ImageLayer>> layers;
+                    map().getMap()->getLayers(layers);
+                    for (const auto& layer : layers)
+                    {
+                        layer->setVisible(random.integer(0, 3) != 0);
+                        layer->setOpacity(static_cast<float>(random.uniform(0.2, 1.0)));
+                    }
+                }
+                break;
+                case 5:
+                    camera().setComputeNearFarMode(
+                        random.integer(0, 1) ? osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR
+                                             : osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
+                    break;
+                default:
+                    camera().setViewMatrix(viewFrom(random.uniform(-180.0, 180.0),
+                                                    random.uniform(-89.0, 89.0),
+                                                    random.logarithmic(60.0, 2e7), random.uniform(0.0, 360.0),
+                                                    random.uniform(-90.0, 10.0)));
+                }
+                setProjection(20.0, 2e7);
+                viewer().frame();
+                if (i == steps / 2) half = residentMiB();
+            }
+        });
+    EXPECT_TRUE(said.empty()) << ::testing::PrintToString(said);
+    EXPECT_LT(residentMiB(), 1.2 * half + 100.0) << "MiB; after half of the steps it was " << half;
+    setProfile("");
+    ASSERT_TRUE(show(extension(effects[0])));
+    const osg::ref_ptr<osg::Image> last = draw(10.5, 0.2, 9000.0, 0.0, -32.0);
+    ASSERT_TRUE(show(extension(effects[0])));
+    EXPECT_LE(differing(*draw(10.5, 0.2, 9000.0, 0.0, -32.0), *last), 20);
 }
 
 TEST_F(EarthMaps, TerrainWithoutSkirtsGetsAWarning)

@@ -3,6 +3,7 @@
 //
 // That freed memory goes back to the system, although small blocks behind it are in use.
 #include <osgGeoFX/paging/FreedMemory.h>
+#include <tools/ResidentMemory.h>
 
 #include <gtest/gtest.h>
 
@@ -11,24 +12,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <malloc.h>
 #include <memory>
 #include <string>
 #include <thread>
-#include <unistd.h>
 #include <vector>
+
+using geofx::test::residentMiB;
 
 namespace
 {
-
-double residentMiB()
-{
-    std::ifstream file("/proc/self/statm");
-    double size = 0.0, resident = 0.0;
-    file >> size >> resident;
-    return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
-}
 
 std::unique_ptr<char[]> filled(std::size_t bytes)
 {
