@@ -15,7 +15,7 @@ namespace
 {
 
 /// Steps of refinement, and how small a box becomes, as a share of its distance.
-constexpr int mostSplits = 300;
+constexpr int mostSplits = 600;
 constexpr double fineness = 0.02;
 /// Metres. A smaller box around the eye does not count.
 constexpr double smallest = 10.0;
@@ -175,6 +175,13 @@ std::vector<std::size_t> ProxyFrustum::worstCells() const
         endless = endless || hasNoEnd;
         if (hasNoEnd == endless) worst.push_back(furthest);
     }
+    // The coarsest ones first, so that no measure uses up the steps of another one.
+    double coarsest = 0.0;
+    for (const std::size_t each : worst)
+        coarsest = std::max(coarsest, _cells[each].coarseness);
+    worst.erase(std::remove_if(worst.begin(), worst.end(),
+                               [&](std::size_t each) { return _cells[each].coarseness < 0.5 * coarsest; }),
+                worst.end());
     std::sort(worst.begin(), worst.end(), std::greater<>());
     worst.erase(std::unique(worst.begin(), worst.end()), worst.end());
     return worst;
