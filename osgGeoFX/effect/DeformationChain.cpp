@@ -253,11 +253,15 @@ void DeformationChain::bound(const EyeBox& box, Hull& hull, double fineness) con
         return;
     }
     EyeBox current = box;
+    // What a hull is too wide, the next one is, too.
+    double slack = 0.0;
     for (std::size_t i = 0; i < _snapshots.size(); ++i)
     {
         if (i > 0) current = around(hull, current);
         hull.slack = 0.0;
         _snapshots[i]->boundBox(current, hull, fineness);
+        hull.slack += slack;
+        slack = hull.slack + hull.margin;
     }
 }
 
