@@ -276,7 +276,7 @@ double DeformationChain::detail(const Ball& ball) const
     double detail = 1.0;
     for (const auto& snapshot : _snapshots)
     {
-        detail *= snapshot->detail(current) * growthOf(*snapshot, current);
+        detail *= snapshot->detail(current) * snapshot->lipschitz(current);
         current = snapshot->bound(current);
     }
     return detail;
