@@ -39,6 +39,14 @@ protected:
         heights.maxHeight = 9000.0;
         EXPECT_TRUE(_scene->setGround(heights));
     }
+    void exaggerate(double factor)
+    {
+        while (_scene->getNumEffects() > 0)
+            _scene->removeEffect(_scene->getEffect(0));
+        const osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
+        exaggeration->setFactor(factor);
+        _scene->addEffect(exaggeration);
+    }
     osg::Vec3d placeAt(double latitude, double longitude, double height) const
     {
         osg::Vec3d place;
@@ -149,11 +157,7 @@ TEST_F(GlobeHorizonTest, HidesNoPeakThatIsSeen)
     int seen = 0, hidden = 0;
     for (int i = 0; i < 30; ++i)
     {
-        while (_scene->getNumEffects() > 0)
-            _scene->removeEffect(_scene->getEffect(0));
-        osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
-        exaggeration->setFactor(random.logarithmic(2.0, 30.0));
-        _scene->addEffect(exaggeration);
+        exaggerate(random.logarithmic(2.0, 30.0));
         const osg::Matrixd view = lookFrom(placeAt(0.0, 0.0, random.logarithmic(1e4, 1e6)), 0.4);
         const osg::ref_ptr<const DeformationChain> chain = _scene->deformation(view, _projection);
         const GlobeHorizon horizon(*chain, ViewGeometry(view, _projection, _ground), {});
@@ -182,11 +186,7 @@ TEST_F(GlobeHorizonTest, HidesPlacesOnTheFarSideAtAnyHeight)
     int seen = 0, hidden = 0;
     for (int i = 0; i < 30; ++i)
     {
-        while (_scene->getNumEffects() > 0)
-            _scene->removeEffect(_scene->getEffect(0));
-        osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
-        exaggeration->setFactor(random.logarithmic(0.2, 10.0));
-        _scene->addEffect(exaggeration);
+        exaggerate(random.logarithmic(0.2, 10.0));
         const osg::Matrixd view = lookFrom(placeAt(0.0, 0.0, random.logarithmic(1e4, 3e7)), 0.4);
         const osg::ref_ptr<const DeformationChain> chain = _scene->deformation(view, _projection);
         const GlobeHorizon horizon(*chain, ViewGeometry(view, _projection, _ground), {});

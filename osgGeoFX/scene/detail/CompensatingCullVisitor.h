@@ -330,7 +330,8 @@ private:
     void showDepthsOfGround();
     /// Where everything is above the horizon, for those who look for the view point.
     osg::Vec3 raisedViewPoint() const;
-    /// The tangents of the angles to the picture's left, right, bottom and top, seen from the eye; infinite where there are none.
+    /// The tangents of the angles to the picture's left, right, bottom and top, seen from the eye; infinite where there are none, or
+    /// where what is drawn may lie beside the picture.
     std::array<double, 4> pictureSides() const;
     /// Sets the proxy frustum, and returns the view point that goes with it.
     osg::Vec3 setProxy(const osg::Matrixd& modelView);

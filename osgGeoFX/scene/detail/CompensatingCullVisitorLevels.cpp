@@ -221,7 +221,7 @@ std::array<double, 4> CompensatingCullVisitor::pictureSides() const
     const osg::Matrixd& p = _sight.picture().projection();
     const bool upright = p(0, 1) == 0.0 && p(1, 0) == 0.0 && p(0, 3) == 0.0 && p(1, 3) == 0.0 &&
                          p(2, 3) < 0.0 && p(3, 3) == 0.0 && p(3, 0) == 0.0 && p(3, 1) == 0.0;
-    if (_task.image || !upright) return sides;
+    if (_task.image || !upright || !cullsByPicture()) return sides;
     for (int axis = 0; axis < 2; ++axis)
     {
         const double scale = std::abs(p(axis, axis));

@@ -17,8 +17,8 @@ namespace
 /// Steps of refinement, and how small a box becomes, as a share of its distance.
 constexpr int mostSplits = 600;
 constexpr double fineness = 0.02;
-/// Metres. A smaller box around the eye does not count.
-constexpr double smallest = 10.0;
+/// Of the terrain's radius, which is 6 m on the Earth. A smaller box around the eye does not count.
+constexpr double smallest = 1e-6;
 /// Directions further off than this are no use in a pyramid.
 constexpr double widest = 50.0;
 /// For rounding in engines that compute in single precision.
@@ -140,7 +140,7 @@ void ProxyFrustum::add(const GroundShell::Block& block)
     const double radius = cell.box.ball().radius;
     const double away = cell.box.center.length() - radius;
     // No tile is as small as what is around the eye then.
-    if (away < 0.0 && radius < smallest) return;
+    if (away < 0.0 && radius < smallest * static_cast<double>(_terrain.bound.radius())) return;
     cell.coarseness = 2.0 * radius / std::max(away, 0.2 * radius);
     const auto [nearest, farthest] = _depthsOf(inView);
     // What is behind the eye does not count, and what cannot be told is to be split.
