@@ -19,6 +19,7 @@
 #include <osgEarth/weejobs.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -90,6 +91,24 @@ void initialize()
     (void)once;
 }
 
+/// A viewer whose time goes on by the same step with each frame. Maps may move, so pictures are taken at moments of one phase.
+class SteadyViewer : public osgViewer::Viewer
+{
+public:
+    void advance(double) override
+    {
+        osgViewer::Viewer::advance(_time);
+        getFrameStamp()->setReferenceTime(_time);
+        _time += step;
+    }
+    /// Lets the next frame be at a whole number of turns.
+    void completeTurn() { _time = std::ceil(_time / (2.0 * osg::PI)) * 2.0 * osg::PI; }
+
+private:
+    static constexpr double step = 1.0 / 60.0;
+    double _time = 0.0;
+};
+
 class Capture : public osg::Camera::DrawCallback
 {
 public:
@@ -158,7 +177,7 @@ bool EarthMaps::startViewer()
     // Without vertex array objects OSG 3.6.5 knows an array by its address. After osgEarth has let a tile go, another one's array may
     // have that address: OpenGL then reads vertices from a buffer that is gone.
     osg::DisplaySettings::instance()->setVertexBufferHint(osg::DisplaySettings::VERTEX_ARRAY_OBJECT);
-    _viewer = *viewer = new osgViewer::Viewer;
+    _viewer = *viewer = new SteadyViewer;
     _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
     camera().setGraphicsContext(context);
     camera().setViewport(0, 0, WIDTH, HEIGHT);
@@ -254,16 +273,18 @@ osg::ref_ptr<osg::Image> EarthMaps::draw(double longitude, double latitude, doub
 osg::ref_ptr<osg::Image> EarthMaps::draw(const osg::Matrixd& view)
 {
     camera().setViewMatrix(view);
-    // Tiles are loaded, then merged, then drawn.
-    constexpr int still = 10, most = 2000;
-    for (int i = 0, quiet = 0; i < most && quiet < still; ++i)
+    // Tiles are loaded, then merged, then drawn. Some maps keep a job for ever.
+    constexpr int still = 10, stillBusy = 150, most = 2000;
+    int waiting = 0;
+    for (int i = 0, quiet = 0; i < most && quiet < (waiting > 0 ? stillBusy : still); ++i)
     {
         // What computes near and far leaves them in the projection.
         camera().setProjectionMatrix(_projection);
         _viewer->frame();
-        const bool busy = jobs::get_metrics()->total() > 0;
-        quiet = busy ? 0 : quiet + 1;
-        if (busy) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        const int former = waiting;
+        waiting = jobs::get_metrics()->total();
+        quiet = waiting == former ? quiet + 1 : 0;
+        if (waiting > 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     if (fading > 0)
     {
@@ -271,6 +292,7 @@ osg::ref_ptr<osg::Image> EarthMaps::draw(const osg::Matrixd& view)
         camera().setProjectionMatrix(_projection);
         _viewer->frame();
     }
+    static_cast<SteadyViewer&>(*_viewer).completeTurn();
     const osg::ref_ptr<Capture> capture = new Capture;
     camera().setFinalDrawCallback(capture);
     camera().setProjectionMatrix(_projection);

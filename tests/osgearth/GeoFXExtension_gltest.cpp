@@ -9,9 +9,12 @@
 #include <tools/NotifyWatch.h>
 #include <tools/RandomSamples.h>
 #include <tools/ResidentMemory.h>
+#include <tools/TempDir.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -178,14 +181,26 @@ TEST_F(EarthMaps, HeightsUpsideDownAreASentence)
     EXPECT_LE(differing(*draw(10.5, 0.2, 9000.0, 0.0, -32.0), *plain), 20);
 }
 
-TEST_F(EarthMaps, MapsWithoutTerrainAreDrawn)
+// The globe of a map without layers is smooth, and one without terrain shows nothing.
+TEST_F(EarthMaps, MapsWithoutLayersOrTerrainSayNothing)
 {
     NotifyWatch watch;
-    const std::vector<std::string> said =
-        watch.messagesOf([&] { EXPECT_TRUE(show(extension("<birdsEyeView/>"), "visible=\"false\"")); });
-    EXPECT_TRUE(scene());
-    draw(10.5, 0.2, 9000.0, 0.0, -32.0);
-    EXPECT_LE(said.size(), 1u) << ::testing::PrintToString(said);
+    const TempDir folder;
+    const std::string file = (folder.path() / "bare.earth").string();
+    for (const bool terrain : {true, false})
+    {
+        std::ofstream(file) << "<map><options><terrain skirt_ratio=\"0.05\" color=\"#7f9f5f\" visible=\""
+                            << (terrain ? "true" : "false") << "\"/></options>"
+                            << extension("<birdsEyeView/>") << "</map>";
+        const std::vector<std::string> said = watch.messagesOf([&] { EXPECT_TRUE(showFile(file)); });
+        EXPECT_TRUE(said.empty()) << ::testing::PrintToString(said);
+        EXPECT_TRUE(scene());
+        const osg::ref_ptr<osg::Image> picture = draw(10.5, 0.2, 9000.0, 0.0, -32.0);
+        const unsigned char* const middle = picture->data(WIDTH / 2, HEIGHT / 2);
+        const osg::Vec4 clear = camera().getClearColor() * 255.0f;
+        const bool isEmpty = std::abs(static_cast<float>(middle[0]) - clear.r()) < 2.0f;
+        EXPECT_EQ(isEmpty, !terrain);
+    }
 }
 
 // Tiles of the map that goes may be on their way.
