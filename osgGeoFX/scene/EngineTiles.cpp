@@ -13,6 +13,12 @@ bool isTileOutOfSight(const osg::Node& tile, osg::NodeVisitor& visitor)
     return ours && ours->leavesOut(tile);
 }
 
+bool isBoxOutOfSight(const osg::BoundingBox& box, const osg::Matrixd& placement, osg::NodeVisitor& visitor)
+{
+    auto* const ours = dynamic_cast<CompensatingCullVisitor*>(&visitor);
+    return ours && ours->leavesOut(box, placement);
+}
+
 double tilePixelSize(const osg::Node& tile, osg::NodeVisitor& visitor)
 {
     auto* const ours = dynamic_cast<CompensatingCullVisitor*>(&visitor);

@@ -4,6 +4,8 @@
 
 #include <osgGeoFX/Export.h>
 
+#include <osg/BoundingBox>
+#include <osg/Matrixd>
 #include <osg/Node>
 #include <osg/NodeVisitor>
 #include <osg/Vec3d>
@@ -28,6 +30,16 @@ namespace osgGeoFX
 
     @ingroup scene */
 OSGGEOFX_EXPORT bool isTileOutOfSight(const osg::Node& tile, osg::NodeVisitor& visitor);
+
+/** Whether a box of an engine's tile is out of sight, so that it need not be drawn. A tile's box knows more than its
+    sphere, since tiles are flat.
+
+    `box`: metres, in a frame of its own. `placement`: from there to the frame of the visitor's current modelview matrix. All
+    else is as for isTileOutOfSight().
+
+    @ingroup scene */
+OSGGEOFX_EXPORT bool isBoxOutOfSight(const osg::BoundingBox& box, const osg::Matrixd& placement,
+                                     osg::NodeVisitor& visitor);
 
 /** How large the deformed picture shows a tile's bounding sphere, for engines that choose levels by that: pixels, as
     osg::CullStack::clampedPixelSize() measures them, over the visitor's LOD scale. What the engine's own culling stack says is of

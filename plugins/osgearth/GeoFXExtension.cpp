@@ -3,6 +3,7 @@
 //
 // The extension <geofx> of osgEarth: a scene's effects in an .earth file, for everything that the map draws.
 #include "HostUnits.h"
+#include "TileCulling.h"
 #include "VirtualProgramHost.h"
 
 #include "../geofx/SceneFile.h"
@@ -111,6 +112,8 @@ public:
         _scene->setLayoutBins({OSGEARTH_SCREEN_SPACE_LAYOUT_BIN});
         if (osgEarth::TerrainEngine* engine = map->getTerrainEngine())
             _scene->setEngineTerrain(engine->getNode());
+        _culling = new TileCulling;
+        _culling->add(*map);
         _raiser = new HorizonRaiser;
         map->getLayerNodeGroup()->addCullCallback(_raiser);
         return true;
@@ -120,6 +123,8 @@ public:
     {
         if (map && _raiser) map->getLayerNodeGroup()->removeCullCallback(_raiser);
         _raiser = nullptr;
+        if (map && _culling) _culling->remove(*map);
+        _culling = nullptr;
         if (!_scene) return false;
         osgEarth::removeGroup(_scene.get());
         _scene = nullptr;
@@ -199,14 +204,12 @@ private:
         if (!engine) return;
         const osg::observer_ptr<const EffectScene> effects = &scene;
         const bool globe = map.isGeocentric();
-        const auto isNeeded = [effects, globe](const osg::Node& tile, osg::NodeVisitor& visitor)
-        {
-            osg::ref_ptr<const EffectScene> known;
-            if (effects.lock(known) && isBeyondPanoramas(*known, globe, tile, visitor)) return false;
-            return !isTileOutOfSight(tile, visitor);
-        };
-        engine->setComputeTileRangeCallback([isNeeded](osg::Node* tile, osg::NodeVisitor& visitor)
-                                            { return isNeeded(*tile, visitor) ? -1.0f : 0.0f; });
+        engine->setComputeTileRangeCallback(
+            [effects, globe](osg::Node* tile, osg::NodeVisitor& visitor)
+            {
+                osg::ref_ptr<const EffectScene> known;
+                return effects.lock(known) && isBeyondPanoramas(*known, globe, *tile, visitor) ? 0.0f : -1.0f;
+            });
         engine->setComputeTilePixelSizeCallback(
             [](osg::Node* tile, osg::NodeVisitor& visitor)
             {
@@ -235,6 +238,7 @@ private:
     osg::ref_ptr<const osgDB::Options> _options;
     osg::ref_ptr<EffectScene> _scene;
     osg::ref_ptr<HorizonRaiser> _raiser;
+    osg::ref_ptr<TileCulling> _culling;
     HostUnits _units;
 };
 #pragma GCC diagnostic pop

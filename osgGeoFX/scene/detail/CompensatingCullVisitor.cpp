@@ -407,6 +407,12 @@ bool CompensatingCullVisitor::leavesOut(const osg::Node& node)
     return out;
 }
 
+bool CompensatingCullVisitor::leavesOut(const osg::BoundingBox& box, const osg::Matrixd& placement)
+{
+    if (!_mode.ours || !_task.compensate || _mode.chain != _task.chain || !box.valid()) return false;
+    return boxOutOfSight(EyeBox::of(box, placement * viewMatrix()));
+}
+
 double CompensatingCullVisitor::pixelSize(const osg::Node& node)
 {
     if (!_mode.ours || !_task.compensate || _mode.chain->empty()) return -1.0;

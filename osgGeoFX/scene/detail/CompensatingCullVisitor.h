@@ -136,6 +136,8 @@ public:
 
     /// Whether a node at the current matrix is out of sight; nothing of it has been culled then.
     bool leavesOut(const osg::Node& node);
+    /// Whether a box is, whose frame `placement` takes to that of the current matrix.
+    bool leavesOut(const osg::BoundingBox& box, const osg::Matrixd& placement);
     /// The size in pixels of a node's deformed bounding sphere, as tilePixelSize() has it.
     double pixelSize(const osg::Node& node);
     /// As osgGeoFX::raisedViewPoint() has it.
