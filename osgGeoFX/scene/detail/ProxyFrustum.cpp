@@ -169,11 +169,12 @@ std::vector<std::size_t> ProxyFrustum::worstCells() const
                 furthest = j;
         }
         if (!(_cells[furthest].coarseness > fineness)) continue;
-        // As long as something has no end on a side, nothing else matters.
-        const bool hasNoEnd = std::isinf(reach(_cells[furthest], measure));
+        // As long as something has no end on a side, nothing but depths matters beside it.
+        const bool isDepth = measure >= ofShapes;
+        const bool hasNoEnd = !isDepth && std::isinf(reach(_cells[furthest], measure));
         if (hasNoEnd && !endless) worst.clear();
         endless = endless || hasNoEnd;
-        if (hasNoEnd == endless) worst.push_back(furthest);
+        if (isDepth || hasNoEnd == endless) worst.push_back(furthest);
     }
     // The coarsest ones first, so that no measure uses up the steps of another one.
     double coarsest = 0.0;
