@@ -47,12 +47,26 @@ vec3 fogged(vec3 color)
 #endif
 }
 
+// How much of a pixel is the segment's: of one with round ends, and of one with straight ends. Round ends of neighbours cover pixels
+// twice, and so widen lines of a pixel or two. Straight ends do not, and leave gaps in the bends of wider ones.
+float coverOfRound(vec3 place)
+{
+    float away = length(vec2(place.x - clamp(place.x, 0.0, geofx_linesLength), place.y));
+    return clamp(place.z + 0.5 - away, 0.0, 1.0);
+}
+
+float coverOfStraight(vec3 place)
+{
+    float across = min(place.z + 0.5 - abs(place.y), 2.0 * place.z);
+    float along = min(place.x + 0.5, geofx_linesLength) - max(place.x - 0.5, 0.0);
+    return clamp(across, 0.0, 1.0) * clamp(along, 0.0, 1.0);
+}
+
 void main()
 {
     vec3 color = fogged(shaded(geofx_linesColor.rgb));
     vec3 place = geofx_linesPlace.xyz / geofx_linesPlace.w; // along, across, half the width
-    float away = length(vec2(place.x - clamp(place.x, 0.0, geofx_linesLength), place.y));
-    float cover = clamp(place.z + 0.5 - away, 0.0, 1.0) * min(2.0 * place.z, 1.0);
+    float cover = mix(coverOfStraight(place), coverOfRound(place), clamp(place.z - 0.5, 0.0, 1.0));
     cover *= geofx_lineDash(geofx_linesDash.x, geofx_linesDashes.x, geofx_linesDashes.y, geofx_linesDashes.z, geofx_linesDash.y);
     if (cover < 0.004) discard;
     gl_FragColor = geofx_fragment(vec4(color, geofx_linesColor.a * cover), vec4(0.0));

@@ -325,6 +325,38 @@ TEST_F(MapLinesTest, StylesOfVectorsAreThoseOfThePicture)
     EXPECT_LT(strays(*casedByCairo, *cased, 1), 0.02);
 }
 
+// Lines narrower than a pixel are as pale as their vectors, which Cairo draws onto the same ground.
+TEST_F(MapLinesTest, ThinLinesAreAsPaleAsTheirVectors)
+{
+    // From above, where nothing is hidden.
+    look({0.0, -900.0, 2200.0}, {0.0, 0.0, 20.0});
+    const osg::ref_ptr<osg::Image> plain = draw();
+    const auto ink = [&](const osg::Image& image)
+    {
+        double sum = 0.0;
+        for (int y = 0; y < HEIGHT; ++y)
+            for (int x = 0; x < WIDTH; ++x)
+            {
+                const unsigned char* const pixel = image.data(x, y);
+                const unsigned char* const ground = plain->data(x, y);
+                for (int channel = 0; channel < 3; ++channel)
+                    sum += std::abs(pixel[channel] - ground[channel]);
+            }
+        return sum;
+    };
+    for (const double width : {0.3, 0.5, 0.8, 1.0, 1.5})
+    {
+        SCOPED_TRACE(width);
+        _styles[""].width = width;
+        hide();
+        draw();
+        const osg::ref_ptr<osg::Image> byCairo = new osg::Image(*plain, osg::CopyOp::DEEP_COPY_ALL);
+        ASSERT_TRUE(vectors().drawOnto(*byCairo, 0));
+        show();
+        EXPECT_NEAR(ink(*draw()) / ink(*byCairo), 1.0, 0.1);
+    }
+}
+
 // They write no depth, and rays do not meet them.
 TEST_F(MapLinesTest, HideNothing)
 {
