@@ -217,6 +217,86 @@ std::vector<Sample> samples(bool lossy)
     return result;
 }
 
+/// How virtual rasters stand on a file.
+const char* const virtualForms[] = {"the file",           "a mosaic",     "a mosaic of a mosaic",
+                                    "a copy of a mosaic", "a warped one", "a mosaic beside a lossless file"};
+
+geofx::test::DatasetPtr opened(const std::string& file)
+{
+    return geofx::test::DatasetPtr(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
+}
+
+std::string writeMosaic(const fs::path& result, const std::vector<std::string>& files)
+{
+    std::vector<const char*> names;
+    for (const std::string& file : files)
+        names.push_back(file.c_str());
+    const geofx::test::DatasetPtr dataset(GDALDataset::FromHandle(GDALBuildVRT(
+        result.c_str(), static_cast<int>(names.size()), nullptr, names.data(), nullptr, nullptr)));
+    EXPECT_TRUE(dataset);
+    return result.string();
+}
+
+std::string writeCopy(const fs::path& result, const std::string& file)
+{
+    CPLStringList arguments;
+    arguments.AddString("-of");
+    arguments.AddString("VRT");
+    GDALTranslateOptions* const options = GDALTranslateOptionsNew(arguments.List(), nullptr);
+    const geofx::test::DatasetPtr source = opened(file);
+    const geofx::test::DatasetPtr dataset(GDALDataset::FromHandle(
+        GDALTranslate(result.c_str(), GDALDataset::ToHandle(source.get()), options, nullptr)));
+    GDALTranslateOptionsFree(options);
+    EXPECT_TRUE(dataset);
+    return result.string();
+}
+
+std::string writeWarped(const fs::path& result, const std::string& file)
+{
+    CPLStringList arguments;
+    arguments.AddString("-of");
+    arguments.AddString("VRT");
+    GDALWarpAppOptions* const options = GDALWarpAppOptionsNew(arguments.List(), nullptr);
+    const geofx::test::DatasetPtr source = opened(file);
+    GDALDatasetH handle = GDALDataset::ToHandle(source.get());
+    const geofx::test::DatasetPtr dataset(
+        GDALDataset::FromHandle(GDALWarp(result.c_str(), nullptr, 1, &handle, options, nullptr)));
+    GDALWarpAppOptionsFree(options);
+    EXPECT_TRUE(dataset);
+    return result.string();
+}
+
+/// A virtual raster of a sample, alone in its folder. `form`: of virtualForms.
+std::string writeVirtual(const fs::path& folder, const Sample& sample, std::size_t form,
+                         const TestRaster::Value& value)
+{
+    const std::string file = write(folder / "own", sample, 3, GDT_Byte, value);
+    fs::create_directories(folder / "steps");
+    const fs::path result = folder / "steps" / "raster.vrt", below = folder / "below.vrt";
+    switch (form)
+    {
+    case 0:
+        return file;
+    case 1:
+        return writeMosaic(result, {file});
+    case 2:
+        return writeMosaic(result, {writeMosaic(below, {file})});
+    case 3:
+        return writeCopy(result, writeMosaic(below, {file}));
+    case 4:
+        return writeWarped(result, file);
+    default:
+    {
+        Sample lossless = sample;
+        lossless.storage = {"DEFLATE", true};
+        return writeMosaic(result, {write(folder / "other", lossless, 3, GDT_Byte,
+                                          [&](int column, int row, int band)
+                                          { return isHole(column, row) ? 0.0 : value(column, row, band); }),
+                                    file});
+    }
+    }
+}
+
 /// All of them in ./tests/run --full, else each mask with each kind of overviews, in one storage: those with no-data of all bands in
 /// JPEG, which rounds it.
 bool isTaken(std::size_t index, std::size_t storages)
@@ -316,6 +396,31 @@ TEST(MaskedRasters, ColorsAreThoseOfTheirPlaces)
               {"surface", surface},
               {"builder", builder}},
              DataLayer::COLOR, make, colorAt, 1.0);
+}
+
+// A hole of JPEG has values beside no-data: in the file, and in virtual rasters of it.
+TEST(MaskedRasters, VirtualRastersAreAsRoughAsTheirFiles)
+{
+    const std::map<std::string, Reader> readers{
+        {"mapping", mapping}, {"tiled", tiled},     {"sequence", sequence}, {"picture", picture},
+        {"overlay", overlay}, {"surface", surface}, {"builder", builder}};
+    const auto rough = [](const Sample& sample)
+    {
+        return [&sample](int column, int row, int band)
+        {
+            if (isHole(column, row)) return (column / 8 + row / 8) % 3 * 1.0;
+            return colorAt(sample, column, row)[static_cast<std::size_t>(band)] * 1.0;
+        };
+    };
+    for (std::size_t form = 0; form < std::size(virtualForms); ++form)
+    {
+        SCOPED_TRACE(virtualForms[form]);
+        checkAll(
+            {{Mask::NO_DATA, Overviews::INTERNAL, {"JPEG", true}}}, 1, readers, DataLayer::COLOR,
+            [&](const fs::path& folder, const Sample& sample)
+            { return writeVirtual(folder, sample, form, rough(sample)); },
+            colorAt, 1.0);
+    }
 }
 
 TEST(MaskedRasters, ValuesAreThoseOfTheirPlaces)

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/geodata/detail/RasterMask.h>
 
+#include <osgGeoFX/geodata/detail/VirtualNames.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -37,14 +39,53 @@ bool hasNoData(GDALRasterBand& band)
     return has != FALSE;
 }
 
-/// Whether a band keeps its values only roughly.
-bool isLossy(GDALRasterBand& band)
+/// Files that a virtual raster is looked up in.
+constexpr std::size_t mostLooked = 16;
+
+/// Some of the files that a virtual raster is made of, from all over it; those of other rasters are none.
+std::vector<std::string> someSourcesOf(GDALDataset& dataset)
 {
-    GDALDataset* const dataset = band.GetDataset();
-    const char* const compression =
-        dataset ? dataset->GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE") : nullptr;
-    return compression && band.GetRasterDataType() == GDT_Byte &&
-           std::string(compression).find("JPEG") != std::string::npos;
+    const char* const* const xml = dataset.GetMetadata("xml:VRT");
+    if (!xml || !*xml) return {};
+    const std::string file = dataset.GetDescription();
+    std::vector<std::string> names = VirtualNames::in(*xml, file);
+    // A virtual raster's overviews are virtual rasters of it, and do not name it.
+    if (names.empty() && !file.empty()) names.push_back(file);
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    if (names.size() <= mostLooked) return names;
+    std::vector<std::string> some;
+    for (std::size_t i = 0; i < mostLooked; ++i)
+        some.push_back(names[i * names.size() / mostLooked]);
+    return some;
+}
+
+/// Whether JPEG has kept a raster, or a file of a virtual one. `looks`: how many files may still be opened.
+bool isOfJpeg(GDALDataset& dataset, std::size_t& looks)
+{
+    const char* const compression = dataset.GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE");
+    if (compression && std::string(compression).find("JPEG") != std::string::npos) return true;
+    const std::vector<std::string> sources = someSourcesOf(dataset);
+    return std::any_of(sources.begin(), sources.end(),
+                       [&](const std::string& name)
+                       {
+                           if (looks == 0) return false;
+                           --looks;
+                           const DatasetPtr source(GDALDataset::Open(name.c_str(), GDAL_OF_RASTER));
+                           return source && isOfJpeg(*source, looks);
+                       });
+}
+
+bool isOfJpeg(GDALDataset& dataset)
+{
+    const GdalErrorScope quiet;
+    std::size_t looks = 2 * mostLooked;
+    return isOfJpeg(dataset, looks);
+}
+
+bool isOfJpeg(GDALRasterBand& band)
+{
+    return band.GetDataset() && isOfJpeg(*band.GetDataset());
 }
 
 /** Which pixels of a band with bytes have its no-data value, where JPEG has kept them. JPEG rounds the value that fills a hole: in
@@ -80,9 +121,10 @@ private:
     const double _noData;
 };
 
-std::unique_ptr<GDALRasterBand> noDataMaskOf(GDALRasterBand& band)
+/// `isRough`: whether the band keeps its values only roughly.
+std::unique_ptr<GDALRasterBand> noDataMaskOf(GDALRasterBand& band, bool isRough)
 {
-    if (isLossy(band)) return std::make_unique<RoughNoDataMask>(band);
+    if (isRough && band.GetRasterDataType() == GDT_Byte) return std::make_unique<RoughNoDataMask>(band);
     return std::make_unique<GDALNoDataMaskBand>(&band);
 }
 
@@ -282,10 +324,13 @@ RasterMask::RasterMask(GDALDataset& dataset, const std::vector<int>& bands, Unde
             _masks.push_back(coarse ? coarse : levelOf(dataset.GetRasterBand(band))->GetMaskBand());
             if (first.GetMaskFlags() & GMF_PER_DATASET) break;
         }
-    for (const int band : bands)
-        if (hasNoData(*dataset.GetRasterBand(band)))
-            _noData.push_back(noDataMaskOf(*levelOf(dataset.GetRasterBand(band))));
-    if (_noData.size() < bands.size()) _noData.clear();
+    const bool isNoData = std::all_of(bands.begin(), bands.end(),
+                                      [&](int band) { return hasNoData(*dataset.GetRasterBand(band)); });
+    // Overviews of a file of JPEG are means of what it has, and may be of JPEG themselves.
+    const bool isRough = isNoData && first.GetRasterDataType() == GDT_Byte &&
+                         (isOfJpeg(dataset) || (overview >= 0 && isOfJpeg(*levelOf(&first))));
+    for (std::size_t i = 0; i < bands.size() && isNoData; ++i)
+        _noData.push_back(noDataMaskOf(*levelOf(dataset.GetRasterBand(bands[i])), isRough));
     for (int i = 1; i <= dataset.GetRasterCount(); ++i)
     {
         GDALRasterBand* const band = dataset.GetRasterBand(i);

@@ -17,9 +17,9 @@ namespace osgGeoFX
 
     A pixel is missing where the raster's mask is 0 (in the file or in a file beside it), where its alpha band is 0, where all of
     the bands that are shown have their no-data value, or where the first of these has an undeclared one, if such are given. One band
-    alone may have its no-data value by chance: a color with no red is no hole. JPEG rounds no-data values of bytes, so there a value
-    within 3 of them counts. GDAL's own masks show one of these, and its virtual datasets show the mask of a band but not that of a
-    color. Not thread-safe. */
+    alone may have its no-data value by chance: a color with no red is no hole. JPEG rounds no-data values of bytes, so there, and in
+    virtual rasters of such files, a value within 3 of them counts. GDAL's own masks show one of these, and its virtual datasets show
+    the mask of a band but not that of a color. Not thread-safe. */
 class RasterMask
 {
 public:
