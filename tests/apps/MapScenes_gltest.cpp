@@ -13,10 +13,14 @@
 #include <osgDB/Registry>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <regex>
+#include <vector>
 
 using geofx::test::ProgramResult;
 
@@ -234,4 +238,84 @@ TEST_F(MapScenes, LiveScenesShowThemAndKeysHideThem)
     EXPECT_GT(both, std::max(lines, names));
     EXPECT_LE(both, lines + names);
     EXPECT_EQ(frames(), both);
+}
+
+// Ground behind a close-up has no name in SVG and PDF files either, and names of the ground that it shows lie on it.
+TEST_F(MapScenes, NamesOfVectorsKnowCloseUps)
+{
+    const double metre = 1.0 / 111320.0;
+    const osg::Vec2d middle = _from;
+    const auto beside = [&](double east, double north)
+    {
+        return middle + osg::Vec2d(east * metre / std::cos(osg::DegreesToRadians(middle.y())), north * metre);
+    };
+    const osg::Vec2d region = beside(-3000.0, 0.0);
+    write("names.geojson", collection(pointFeature("Riding", "hut", region) + "," +
+                                      pointFeature("Hidden", "hut", beside(2500.0, 300.0)) + "," +
+                                      pointFeature("Open", "hut", beside(-500.0, 3500.0))));
+    write("style.json", R"({"names": {"hut": {"manner": "beside", "dot": 4, "size": 40}}})");
+    const auto sceneOf = [&](bool hasCloseUp)
+    {
+        char text[1000];
+        std::snprintf(
+            text, sizeof(text),
+            "<geofx version='1'><terrain><database file='%s'/></terrain>\n<homeView longitude='%.6f' "
+            "latitude='%.6f' height='30000' heading='0' pitch='-90'/>\n<effects><closeUps "
+            "enabled='%s'><closeUp offsetX='5000' offsetHeight='5000'><region longitude='%.6f' "
+            "latitude='%.6f' width='3000' depth='3000'/></closeUp></closeUps></effects>\n"
+            "<map style='style.json'><mapNames file='names.geojson'/></map></geofx>",
+            _terrain.c_str(), middle.x(), middle.y(), hasCloseUp ? "true" : "false", region.x(), region.y());
+        return std::string(text);
+    };
+    write("with.geofx", sceneOf(true));
+    write("without.geofx", sceneOf(false));
+    const auto dotsIn = [&](const std::string& scene)
+    {
+        rendered(scene, "map.png", {"--svg", "map.svg"});
+        const std::string svg = bytes("map.svg");
+        std::map<std::string, double> places;
+        const std::regex dot(R"x(circle cx="([0-9.]+)")x"), text(R"x(>([A-Z][a-z]+)</text>)x");
+        std::vector<double> dots;
+        for (std::sregex_iterator i(svg.begin(), svg.end(), dot), end; i != end; ++i)
+            dots.push_back(std::stod((*i)[1]));
+        std::vector<std::string> names;
+        for (std::sregex_iterator i(svg.begin(), svg.end(), text), end; i != end; ++i)
+            names.push_back((*i)[1]);
+        EXPECT_EQ(dots.size(), names.size()) << svg;
+        for (std::size_t i = 0; i < std::min(dots.size(), names.size()); ++i)
+            places[names[i]] = dots[i];
+        return places;
+    };
+    const std::map<std::string, double> without = dotsIn("without.geofx"), with = dotsIn("with.geofx");
+    ASSERT_EQ(without.size(), 3u);
+    ASSERT_EQ(with.size(), 2u);
+    EXPECT_EQ(with.count("Hidden"), 0u);
+    EXPECT_NEAR(with.at("Open"), without.at("Open"), 0.1);
+    EXPECT_LT(without.at("Riding"), 210.0);
+    EXPECT_NEAR(with.at("Riding"), without.at("Hidden"), 12.0);
+    // The place that is written is the place of the text, too.
+    const auto textOf = [&](const std::string& scene)
+    {
+        rendered(scene, "map.pdf", {}, "6.4x3.6in@75dpi");
+        geofx::test::ProgramOptions options;
+        options.folder = fs::path(_folder.path()).string();
+        return geofx::test::runProgram({"/usr/bin/pdftotext", "-bbox", "map.pdf", "-"}, options)
+            .standardOutput;
+    };
+    const auto wordAt = [&](const std::string& text, const std::string& word)
+    {
+        std::smatch match;
+        const bool isThere = std::regex_search(
+            text, match,
+            std::regex("xMin=\"([0-9.]+)\" yMin=\"[0-9.]+\" xMax=\"([0-9.]+)\"[^>]*>" + word + "<"));
+        return isThere ? 0.5 * (std::stod(match[1]) + std::stod(match[2])) : -1.0;
+    };
+    const std::string bare = textOf("without.geofx"), lifted = textOf("with.geofx");
+    for (const char* const name : {"Riding", "Hidden", "Open"})
+        EXPECT_GT(wordAt(bare, name), 0.0) << name << " in " << bare;
+    EXPECT_EQ(wordAt(lifted, "Hidden"), -1.0) << lifted;
+    EXPECT_NEAR(wordAt(lifted, "Open"), wordAt(bare, "Open"), 1.0);
+    // From pixels to points.
+    EXPECT_NEAR(wordAt(lifted, "Riding") - wordAt(bare, "Riding"),
+                (with.at("Riding") - without.at("Riding")) * 72.0 / 75.0, 1.0);
 }
