@@ -45,10 +45,17 @@ struct Trial
     std::map<std::string, std::string> files; ///< of a database; empty for pictures
 };
 
-/// Numbers such as times differ from run to run.
+/// Numbers such as times differ from run to run, and so does the room before them.
 std::string withoutNumbers(const std::string& line)
 {
-    return std::regex_replace(line, std::regex("[-+]?[0-9]+([.][0-9]+)?"), "#");
+    return std::regex_replace(line, std::regex(" *[-+]?[0-9]+([.][0-9]+)?"), "#");
+}
+
+/// Whether a line tells what a layer has at a place, and the layer's file is one of these words.
+bool isValueOf(const std::string& line, const Words& words)
+{
+    return std::any_of(words.begin(), words.end(),
+                       [&](const std::string& word) { return line.rfind("  " + word + ": ", 0) == 0; });
 }
 
 bool isBeside(const osg::Image& a, const osg::Image& b, int x, int y)
@@ -199,6 +206,8 @@ protected:
         for (std::string line; std::getline(stream, line);)
             done.lines.insert(withoutNumbers(line));
         if (program == "osggeofx_build") done.files = contents(file("out"));
+        // What it prints is its work.
+        if (program == "osggeofx_cluster") done.files["standard output"] = result.standardOutput;
         std::set<std::string> pictures;
         for (const auto& each : fs::directory_iterator(file("out")))
             if (each.path().extension() == ".png") pictures.insert(each.path().string());
@@ -229,6 +238,7 @@ protected:
             EXPECT_EQ(trial.exitCode, 0) << sample.option << ": " << trial.text;
             return trial;
         };
+        if (samples.empty()) return;
         for (const auto& [i, j] : pairsOf(samples.size(), sampleSize))
         {
             const Sample &first = samples[i], &second = samples[j];
@@ -343,8 +353,10 @@ exit $code)",
             const bool isReason = (has("--explain") || has("--light")) && line.rfind("osggeofx", 0) != 0;
             // The command of a job has all of its options in one line.
             const bool isCommand = line.find(" --work ") != std::string::npos;
-            EXPECT_TRUE(names || isReason || isCommand || none.lines.count(plain) || a.lines.count(plain) ||
-                        b.lines.count(plain))
+            // Values are those of all layers.
+            const bool isValue = has("--values") && isValueOf(line, words);
+            EXPECT_TRUE(names || isReason || isCommand || isValue || none.lines.count(plain) ||
+                        a.lines.count(plain) || b.lines.count(plain))
                 << line;
         }
         EXPECT_TRUE(isNamed || !isRefused) << both.text;
@@ -364,8 +376,10 @@ exit $code)",
         // What a light map takes out of colors changes what samples make of them.
         if (has("--light")) return;
         const bool movesGround = has("--liberties") || has("--liberty") || has("--vertical");
-        // Lines have bounds, too.
-        const bool addsBounds = has("--lines") && has("--debug-bounds");
+        // Without compensation no deformed bounds decide, so that none are drawn.
+        if (has("--no-compensation") && has("--debug-bounds")) return;
+        // Lines have bounds, too, and an inset shows those of all.
+        const bool addsBounds = (has("--lines") || has("--inset")) && has("--debug-bounds");
         expectNoOtherPixels(*both.picture, *none.picture, *a.picture, *b.picture, movesGround || addsBounds);
     }
 
@@ -450,6 +464,25 @@ TEST_F(OptionPairs, OfRender)
     tryPairs("osggeofx_render", {"work/ground/terrain.osgb"},
              {{"--size", {"--size", "160x100"}}, {"--view", {"--view", "174.1,-39.55,4000,0,-12"}}}, samples,
              {"--help", "--output", "--help-effects"}, 3);
+
+    // Values of colors are stretched as those that are shown.
+    const auto colorAt = [&](const Words& more)
+    {
+        Words words = {"work/ground/terrain.osgb", "-o",        "values.png", "--size",   "160x100", "--view",
+                       "174.1,-39.55,4000,0,-12",  "--mapping", "colors.tif", "--values", "80,60"};
+        words.insert(words.end(), more.begin(), more.end());
+        const std::string text = run("osggeofx_render", words).standardOutput;
+        std::smatch color;
+        EXPECT_TRUE(std::regex_search(text, color, std::regex("colors.tif: #([0-9a-f]{6})"))) << text;
+        return color.empty() ? 0ul : std::stoul(color[1], nullptr, 16);
+    };
+    const unsigned long plain = colorAt({}), stretched = colorAt({"--stretch", "20,120"});
+    // Both are rounded to bytes.
+    for (const unsigned int shift : {16u, 8u, 0u})
+    {
+        const double from = (plain >> shift) & 255u;
+        EXPECT_NEAR((stretched >> shift) & 255u, std::clamp((from - 20.0) * 2.55, 0.0, 255.0), 4.0);
+    }
 }
 
 TEST_F(OptionPairs, OfPanorama)
@@ -589,6 +622,24 @@ TEST_F(OptionPairs, OfCluster)
     std::vector<Sample> submitted = both;
     submitted.push_back({"--partition", {"--partition", "fast"}});
     tryPairs("osggeofx_cluster", {"submit", "plan", "--dry-run"}, {}, submitted, {"--help", "--dry-run"}, 3);
+    // It has no options, so that no pairs of them are tried: those that it gets must stand here.
+    tryPairs("osggeofx_cluster", {"status", "plan"}, {}, {}, {"--help"}, 0);
+
+    const std::string first = stage[1].str() + ":0-0";
+    const ProgramResult measured = run("osggeofx_build", {"--quiet", "--work", "plan", "--unit", first});
+    ASSERT_EQ(measured.exitCode, 0) << measured.standardError;
+    const ProgramResult saved = run("osggeofx_cluster", {"predict", "plan", "--save", "times.json"});
+    ASSERT_EQ(saved.exitCode, 0) << saved.standardError;
+    const std::vector<Sample> predicted = {
+        {"--units-per-job", {"--units-per-job", "2"}},
+        {"--until", {"--until", stage[1]}},
+        {"--cores", {"--cores", "2"}},
+        {"--workers", {"--cores", "2", "--workers", "3"}},
+        {"--times", {"--times", "times.json"}},
+        {"--save", {"--save", "out/times.json"}},
+    };
+    tryPairs("osggeofx_cluster", {"predict", "plan"}, {}, predicted, {"--help"}, 3);
+    tryPairs("osggeofx_cluster", {"status", "plan"}, {}, {}, {"--help"}, 0);
 }
 
 TEST_F(OptionPairs, OfViewer)
