@@ -5,6 +5,7 @@
 #include <osgGeoFX/effect/GroundShade.h>
 #include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/effect/detail/DrawableTriangles.h>
+#include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/scene/RigidReference.h>
 #include <osgGeoFX/scene/detail/DividedTriangles.h>
 #include <osgGeoFX/scene/detail/PatchTwins.h>
@@ -90,6 +91,17 @@ std::vector<Meeting> meetParts(const osg::Vec3d& origin, const osg::Vec3d& direc
         lower = upper;
     }
     return all;
+}
+
+/// The engine of the scene at or above a node; null for none.
+const ShaderHost* hostOf(const osg::Node& node)
+{
+    if (const auto* const scene = dynamic_cast<const EffectScene*>(&node)) return scene->getShaderHost();
+    for (const osg::Group* const parent : node.getParents())
+    {
+        if (const ShaderHost* const host = hostOf(*parent)) return host;
+    }
+    return nullptr;
 }
 
 } // namespace
@@ -292,6 +304,8 @@ public:
         : _visitor(visitor), _chain(visitor._chain), _radius(visitor._lodRadius), _limit(visitor._lodLimit),
           _deformation(visitor._deformation)
     {
+        // The engine decides which of its programs deform; it is the same for all below the first node.
+        if (visitor.getNodePath().size() == 1) visitor._programs->setHost(hostOf(node));
         visitor._deformation.meet(node.getStateSet());
         visitor.choose();
         if (visitor._chain == _chain) return;

@@ -6,6 +6,7 @@
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/RigidReference.h>
+#include <osgGeoFX/scene/ShaderHost.h>
 #include <osgGeoFX/viewer/AboveGround.h>
 #include <osgGeoFX/viewer/GroundGrip.h>
 #include <tools/HeightMesh.h>
@@ -53,6 +54,13 @@ std::vector<osg::ref_ptr<osgGA::CameraManipulator>> allManipulators()
             new osgGA::TerrainManipulator,   new osgGA::OrbitManipulator,  new osgGA::FirstPersonManipulator,
             new osgGA::SphericalManipulator};
 }
+
+/// An engine whose programs draw with the effects' functions, though their texts do not show it.
+class Engine : public ShaderHost
+{
+public:
+    bool draws(const osg::StateAttribute&) const override { return true; }
+};
 
 class AboveGroundTest : public WindowEvents
 {
@@ -205,6 +213,32 @@ TEST_F(AboveGroundTest, PathsAreLeftAloneAndThingsHoldNobodyUp)
     const osg::Vec3d inside(0.0, 0.0, 400.0);
     above->setByInverseMatrix(lookingNorth(inside, -10.0));
     EXPECT_LT((eyeAfter(*above) - inside).length(), 1e-6);
+}
+
+TEST_F(AboveGroundTest, GroundOfAnEngineIsWhereItsHostDrawsIt)
+{
+    const osg::ref_ptr<VerticalExaggeration> effect = new VerticalExaggeration;
+    effect->setFactor(3.0);
+    scene->addEffect(effect);
+    const osg::ref_ptr<osg::Program> program = new osg::Program;
+    program->addShader(new osg::Shader(osg::Shader::VERTEX, "void main() { gl_Position = ftransform(); }"));
+    scene->getChild(0)->getOrCreateStateSet()->setAttribute(program);
+    const osg::Vec3d eye(700.0, 200.0, 5000.0);
+    const double height = hillAt(eye.x(), eye.y());
+    viewer.getCamera()->setViewMatrix(lookingNorth(eye, -89.999));
+    const auto seen = [&]
+    {
+        return eye.z() - DeformedView(*scene, *viewer.getCamera()).pick(0.5 * WIDTH, 0.5 * HEIGHT)->distance;
+    };
+    const auto rise = [&]
+    {
+        return AboveGround::rise(*scene, lookingNorth({700.0, 200.0, 0.0}, -10.0), *viewer.getCamera(), 2.0);
+    };
+    EXPECT_NEAR(seen(), height, 2.0) << "a program that draws by itself";
+    EXPECT_NEAR(rise(), height + 2.0, 2.0);
+    scene->setShaderHost(new Engine);
+    EXPECT_NEAR(seen(), 3.0 * height, 2.0);
+    EXPECT_NEAR(rise(), 3.0 * height + 2.0, 2.0);
 }
 
 TEST_F(AboveGroundTest, TheWheelGoesToThePlaceBelowThePointer)
