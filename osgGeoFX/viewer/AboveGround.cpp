@@ -129,9 +129,9 @@ double AboveGround::rise(EffectScene& scene, const osg::Matrixd& view, const osg
     return std::max(0.0, below + margin);
 }
 
-bool AboveGround::mustLook(const osg::Camera& camera)
+bool AboveGround::Watch::mustLook(EffectScene& scene, const osg::Camera& camera)
 {
-    const std::uint64_t effects = stampOf(*_scene);
+    const std::uint64_t effects = stampOf(scene);
     const double time = osg::Timer::instance()->time_s();
     const bool same = _time >= 0.0 && _effects == effects && _view == camera.getViewMatrix() &&
                       _projection == camera.getProjectionMatrix();
@@ -142,26 +142,35 @@ bool AboveGround::mustLook(const osg::Camera& camera)
     return true;
 }
 
-void AboveGround::updateCamera(osg::Camera& camera)
+std::optional<osg::Matrixd> AboveGround::Watch::risen(EffectScene& scene, const osg::Camera& camera,
+                                                      double margin)
 {
-    _inner->updateCamera(camera);
-    if (!_enabled || !isFree(_inner) || !mustLook(camera)) return;
+    if (!mustLook(scene, camera)) return std::nullopt;
     osg::Matrixd view = camera.getViewMatrix();
     bool moved = false;
     for (int i = 0; i < tries; ++i)
     {
-        const double metres = rise(*_scene, view, camera, _margin);
+        const double metres = rise(scene, view, camera, margin);
         if (!(metres > 1e-3)) break;
-        const DeformedView picture(*_scene, view, camera.getProjectionMatrix(), 1.0, 1.0);
+        const DeformedView picture(scene, view, camera.getProjectionMatrix(), 1.0, 1.0);
         const ViewGeometry geometry(picture.modelView(), camera.getProjectionMatrix(), picture.ground());
         view.postMultTranslate(geometry.up * -metres);
         moved = true;
     }
     _view = view;
-    if (!moved) return;
-    _inner->setByInverseMatrix(view);
+    if (!moved) return std::nullopt;
+    return view;
+}
+
+void AboveGround::updateCamera(osg::Camera& camera)
+{
+    _inner->updateCamera(camera);
+    if (!_enabled || !isFree(_inner)) return;
+    const auto view = _watch.risen(*_scene, camera, _margin);
+    if (!view) return;
+    _inner->setByInverseMatrix(*view);
     // Some manipulators take only a part of it.
-    camera.setViewMatrix(view);
+    camera.setViewMatrix(*view);
 }
 
 } // namespace osgGeoFX

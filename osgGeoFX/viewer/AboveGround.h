@@ -7,6 +7,7 @@
 #include <osgGA/CameraManipulator>
 
 #include <cstdint>
+#include <optional>
 
 namespace osgGeoFX
 {
@@ -51,6 +52,23 @@ public:
     /// How far a camera has to rise, metres, to be `margin` above the ground as it shows it; 0 where it is high enough.
     static double rise(EffectScene& scene, const osg::Matrixd& view, const osg::Camera& camera,
                        double margin);
+
+    /** Looks at the ground below one camera, for manipulators that keep it above the ground themselves. */
+    class OSGGEOFX_EXPORT Watch
+    {
+    public:
+        /// The camera's view matrix after a straight rise to `margin` above the ground, metres; empty if it is high enough, and
+        /// where nothing has changed since the last look.
+        std::optional<osg::Matrixd> risen(EffectScene& scene, const osg::Camera& camera, double margin);
+
+    private:
+        bool mustLook(EffectScene& scene, const osg::Camera& camera);
+
+        // What there was at the last look.
+        osg::Matrixd _view, _projection;
+        std::uint64_t _effects = 0;
+        double _time = -1.0; ///< seconds
+    };
 
     void updateCamera(osg::Camera& camera) override;
 
@@ -102,16 +120,11 @@ protected:
     ~AboveGround() override;
 
 private:
-    bool mustLook(const osg::Camera& camera);
-
     const osg::ref_ptr<EffectScene> _scene;
     const osg::ref_ptr<osgGA::CameraManipulator> _inner;
     double _margin = 2.0;
     bool _enabled = true;
-    // What there was at the last look.
-    osg::Matrixd _view, _projection;
-    std::uint64_t _effects = 0;
-    double _time = -1.0; ///< seconds
+    Watch _watch;
 };
 
 } // namespace osgGeoFX

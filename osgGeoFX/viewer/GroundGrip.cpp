@@ -27,8 +27,7 @@ class Mover
 {
 public:
     Mover(EffectScene& scene, const osg::Camera& camera, const osg::Matrixd& view)
-        : _scene(scene), _camera(camera), _toWorld(osg::Matrixd::inverse(view)),
-          _start(scene, view, camera.getProjectionMatrix(), 1.0, 1.0)
+        : _toWorld(osg::Matrixd::inverse(view)), _start(scene, view, camera.getProjectionMatrix(), 1.0, 1.0)
     {
         _pose.invert(_start.modelView());
         const ViewGeometry geometry(_start.modelView(), camera.getProjectionMatrix(), _start.ground());
@@ -60,16 +59,8 @@ public:
         const osg::Matrixd above = _start.modelView() * _toWorld;
         return osg::Matrixd::inverse(pose * above);
     }
-    bool project(const osg::Vec2d& way, const osg::Vec3d& world, osg::Vec2d& pixel) const
-    {
-        const osg::Viewport& port = *_camera.getViewport();
-        return DeformedView(_scene, at(way), _camera.getProjectionMatrix(), port.width(), port.height())
-            .project(world, pixel);
-    }
 
 private:
-    EffectScene& _scene;
-    const osg::Camera& _camera;
     osg::Matrixd _toWorld;
     DeformedView _start;
     osg::Matrixd _pose; ///< of the camera, in the frame of the scene's children
@@ -88,17 +79,32 @@ std::optional<osg::Matrixd> GroundGrip::bring(EffectScene& scene, const osg::Cam
                                               const osg::Matrixd& view, const osg::Vec3d& world,
                                               const osg::Vec2d& pixel)
 {
-    if (!camera.getViewport()) return std::nullopt;
     const Mover mover(scene, camera, view);
+    const auto way = wayOf(
+        scene, camera, [&mover](const osg::Vec2d& gone) { return mover.at(gone); }, 1e-4 * mover.height(),
+        world, pixel);
+    if (!way) return std::nullopt;
+    return mover.at(*way);
+}
+
+std::optional<osg::Vec2d> GroundGrip::wayOf(EffectScene& scene, const osg::Camera& camera,
+                                            const std::function<osg::Matrixd(const osg::Vec2d& way)>& viewAt,
+                                            double step, const osg::Vec3d& world, const osg::Vec2d& pixel)
+{
+    const osg::Viewport* const port = camera.getViewport();
+    if (!port) return std::nullopt;
+    const auto project = [&](const osg::Vec2d& gone, osg::Vec2d& seen)
+    {
+        return DeformedView(scene, viewAt(gone), camera.getProjectionMatrix(), port->width(), port->height())
+            .project(world, seen);
+    };
     osg::Vec2d way, shown;
-    if (!mover.project(way, world, shown)) return std::nullopt;
+    if (!project(way, shown)) return std::nullopt;
     double away = (shown - pixel).length();
-    const double step = 1e-4 * mover.height();
     for (int i = 0; i < steps && away > exact; ++i)
     {
         osg::Vec2d right, ahead;
-        if (!mover.project(way + osg::Vec2d(step, 0.0), world, right) ||
-            !mover.project(way + osg::Vec2d(0.0, step), world, ahead))
+        if (!project(way + osg::Vec2d(step, 0.0), right) || !project(way + osg::Vec2d(0.0, step), ahead))
             return std::nullopt;
         const osg::Vec2d a = (right - shown) / step, b = (ahead - shown) / step, miss = pixel - shown;
         const double area = a.x() * b.y() - a.y() * b.x();
@@ -110,7 +116,7 @@ std::optional<osg::Matrixd> GroundGrip::bring(EffectScene& scene, const osg::Cam
         for (int half = 0; half < 6 && !nearer; ++half, change *= 0.5)
         {
             osg::Vec2d next;
-            if (!mover.project(way + change, world, next) || !((next - pixel).length() < away)) continue;
+            if (!project(way + change, next) || !((next - pixel).length() < away)) continue;
             way += change;
             shown = next;
             away = (shown - pixel).length();
@@ -120,7 +126,7 @@ std::optional<osg::Matrixd> GroundGrip::bring(EffectScene& scene, const osg::Cam
         if (!nearer) break;
     }
     if (away > 1.0) return std::nullopt;
-    return mover.at(way);
+    return way;
 }
 
 void GroundGrip::move(osgViewer::View& view, const osg::Matrixd& matrix, const osg::Vec3d& world) const
