@@ -142,6 +142,7 @@
 #include <osgGeoFX/viewer/Compass.h>
 #include <osgGeoFX/viewer/CornerOverlay.h>
 #include <osgGeoFX/viewer/CurvePanel.h>
+#include <osgGeoFX/viewer/EarthNavigation.h>
 #include <osgGeoFX/viewer/EarthSky.h>
 #include <osgGeoFX/viewer/EffectKeys.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
