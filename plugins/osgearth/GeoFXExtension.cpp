@@ -92,11 +92,12 @@ public:
                      << std::endl;
             return false;
         }
-        _scene = new EffectScene;
-        _scene->setName("osgGeoFX scene");
-        osgEarth::insertParent(_scene.get(), map);
+        const osg::ref_ptr<EffectScene> scene = new EffectScene;
+        _scene = scene;
+        scene->setName("osgGeoFX scene");
+        osgEarth::insertParent(scene.get(), map);
         std::string error;
-        if (!addEffects(*read.scene, *_scene, *map, error))
+        if (!addEffects(*read.scene, *scene, *map, error))
         {
             OSG_WARN << "osgGeoFX: " << error << std::endl;
             disconnect(map);
@@ -104,14 +105,14 @@ public:
         }
         if (!takeUnits(*map, error)) OSG_WARN << "osgGeoFX: " << error << std::endl;
         // A plane as large as the Earth might be taken for one.
-        if (!map->isGeocentric() && _scene->getTerrainFrame() == EffectScene::AUTOMATIC)
-            _scene->setTerrainFrame(EffectScene::PROJECTED);
-        refineWhatIsSeen(*map, *_scene);
-        _scene->setShaderHost(new VirtualProgramHost);
-        _scene->setEngineCulling(read.scene->engine->culling);
-        _scene->setLayoutBins({OSGEARTH_SCREEN_SPACE_LAYOUT_BIN});
+        if (!map->isGeocentric() && scene->getTerrainFrame() == EffectScene::AUTOMATIC)
+            scene->setTerrainFrame(EffectScene::PROJECTED);
+        refineWhatIsSeen(*map, *scene);
+        scene->setShaderHost(new VirtualProgramHost);
+        scene->setEngineCulling(read.scene->engine->culling);
+        scene->setLayoutBins({OSGEARTH_SCREEN_SPACE_LAYOUT_BIN});
         if (osgEarth::TerrainEngine* engine = map->getTerrainEngine())
-            _scene->setEngineTerrain(engine->getNode());
+            scene->setEngineTerrain(engine->getNode());
         _culling = new TileCulling;
         _culling->add(*map);
         _raiser = new HorizonRaiser;
@@ -125,8 +126,9 @@ public:
         _raiser = nullptr;
         if (map && _culling) _culling->remove(*map);
         _culling = nullptr;
-        if (!_scene) return false;
-        osgEarth::removeGroup(_scene.get());
+        osg::ref_ptr<EffectScene> scene;
+        if (!_scene.lock(scene)) return false;
+        osgEarth::removeGroup(scene.get());
         _scene = nullptr;
         return true;
     }
@@ -236,7 +238,7 @@ private:
 
     osgEarth::ConfigOptions _config;
     osg::ref_ptr<const osgDB::Options> _options;
-    osg::ref_ptr<EffectScene> _scene;
+    osg::observer_ptr<EffectScene> _scene; ///< it holds the map, which holds the extension
     osg::ref_ptr<HorizonRaiser> _raiser;
     osg::ref_ptr<TileCulling> _culling;
     HostUnits _units;

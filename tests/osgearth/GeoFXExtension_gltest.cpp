@@ -224,6 +224,22 @@ TEST_F(EarthMaps, MapsAreReplacedWhileTilesCome)
     EXPECT_LE(differing(*draw(10.5, 0.2, 9000.0, 0.0, -32.0), *last), 20);
 }
 
+// The scene holds the map, which holds the extension.
+TEST_F(EarthMaps, AMapThatGoesIsFreed)
+{
+    ASSERT_TRUE(show(extension("<birdsEyeView/>")));
+    viewer().frame();
+    const osg::observer_ptr<osgEarth::MapNode> map = &this->map();
+    const osg::observer_ptr<EffectScene> effects = scene();
+    EXPECT_TRUE(map.valid());
+    EXPECT_TRUE(effects.valid());
+    ASSERT_TRUE(show(""));
+    for (int frame = 0; frame < 3; ++frame)
+        viewer().frame();
+    EXPECT_FALSE(effects.valid());
+    EXPECT_FALSE(map.valid());
+}
+
 // An hour of use with GEOFX_TEST_FULL, a minute without: effects, layers, views and maps come and go.
 TEST_F(EarthMaps, RandomStepsEndWell)
 {
