@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // The extension <geofx> of osgEarth: a scene's effects in an .earth file, for everything that the map draws.
+#include "HeightWatch.h"
 #include "HostUnits.h"
 #include "TileCulling.h"
 #include "VirtualProgramHost.h"
@@ -112,7 +113,16 @@ public:
         scene->setEngineCulling(read.scene->engine->culling);
         scene->setLayoutBins({OSGEARTH_SCREEN_SPACE_LAYOUT_BIN});
         if (osgEarth::TerrainEngine* engine = map->getTerrainEngine())
+        {
             scene->setEngineTerrain(engine->getNode());
+            const EffectScene::GroundDescription& ground = scene->getGround();
+            if (ground.minHeight && ground.maxHeight)
+            {
+                _heights =
+                    new HeightWatch(_config.getConfig().referrer(), *ground.minHeight, *ground.maxHeight);
+                engine->addCreateTileModelCallback(_heights);
+            }
+        }
         _culling = new TileCulling;
         _culling->add(*map);
         _raiser = new HorizonRaiser;
@@ -126,6 +136,9 @@ public:
         _raiser = nullptr;
         if (map && _culling) _culling->remove(*map);
         _culling = nullptr;
+        if (map && _heights && map->getTerrainEngine())
+            map->getTerrainEngine()->removeCreateTileModelCallback(_heights);
+        _heights = nullptr;
         osg::ref_ptr<EffectScene> scene;
         if (!_scene.lock(scene)) return false;
         osgEarth::removeGroup(scene.get());
@@ -241,6 +254,7 @@ private:
     osg::observer_ptr<EffectScene> _scene; ///< it holds the map, which holds the extension
     osg::ref_ptr<HorizonRaiser> _raiser;
     osg::ref_ptr<TileCulling> _culling;
+    osg::ref_ptr<HeightWatch> _heights;
     HostUnits _units;
 };
 #pragma GCC diagnostic pop
