@@ -14,9 +14,13 @@
 #include <osgEarth/Extension>
 #include <osgEarth/GLUtils>
 #include <osgEarth/GeoData>
+#include <osgEarth/ImageLayer>
 #include <osgEarth/Registry>
+#include <osgEarth/ScreenSpaceLayout>
 #include <osgEarth/XmlUtils>
 #include <osgEarth/weejobs.h>
+#include <osgUtil/RenderStage>
+#include <osgViewer/Renderer>
 
 #include <chrono>
 #include <cmath>
@@ -131,6 +135,19 @@ public:
     osgGeoFX::EffectScene* found = nullptr;
 };
 
+/// Reads where osgEarth's layout has put its leaves.
+void collectLaidOut(osgUtil::RenderBin& bin, std::map<const osg::Drawable*, osg::Vec2d>& anchors)
+{
+    if (bin.getName() == OSGEARTH_SCREEN_SPACE_LAYOUT_BIN)
+        for (const osgUtil::RenderLeaf* leaf : bin.getRenderLeafList())
+        {
+            const osg::Vec3d at = leaf->_modelview->getTrans();
+            anchors[leaf->getDrawable()] = {at.x(), at.y()};
+        }
+    for (const auto& [number, each] : bin.getRenderBinList())
+        collectLaidOut(*each, anchors);
+}
+
 } // namespace
 
 EarthMaps::EarthMaps() : _folder(std::make_unique<TempDir>()) {}
@@ -184,6 +201,8 @@ bool EarthMaps::startViewer()
     camera().setDrawBuffer(GL_FRONT);
     camera().setReadBuffer(GL_FRONT);
     camera().setClearColor({0.7f, 0.8f, 0.9f, 1.0f});
+    // As osgEarth's own viewer has it. A label is smaller than a pixel otherwise.
+    camera().setSmallFeatureCullingPixelSize(-1.0f);
     _viewer->setRealizeOperation(new osgEarth::GL3RealizeOperation);
     _viewer->realize();
     return true;
@@ -299,6 +318,22 @@ osg::ref_ptr<osg::Image> EarthMaps::draw(const osg::Matrixd& view)
     _viewer->frame();
     camera().setFinalDrawCallback(nullptr);
     return capture->image;
+}
+
+std::map<const osg::Drawable*, osg::Vec2d> EarthMaps::laidOut()
+{
+    std::map<const osg::Drawable*, osg::Vec2d> anchors;
+    auto* renderer = dynamic_cast<osgViewer::Renderer*>(camera().getRenderer());
+    if (renderer) collectLaidOut(*renderer->getSceneView(0)->getRenderStage(), anchors);
+    return anchors;
+}
+
+void EarthMaps::hideImages()
+{
+    std::vector<osg::ref_ptr<osgEarth::ImageLayer>> layers;
+    _map->getMap()->getLayers(layers);
+    for (const auto& layer : layers)
+        layer->setVisible(false);
 }
 
 int EarthMaps::differing(const osg::Image& a, const osg::Image& b)

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -45,6 +46,10 @@ protected:
     osg::ref_ptr<osg::Image> draw(const osg::Matrixd& view);
     /// The view matrix of a camera at a place, degrees and metres.
     osg::Matrixd viewFrom(double longitude, double latitude, double height, double heading, double pitch);
+    /// Where the labels and icons of the last picture stand, pixels, by their drawables.
+    std::map<const osg::Drawable*, osg::Vec2d> laidOut();
+    /// Leaves the ground in one color.
+    void hideImages();
     /// Pixels that differ.
     static int differing(const osg::Image& a, const osg::Image& b);
 
@@ -56,6 +61,7 @@ protected:
     const std::string& file() const { return _file; }
     /// The projection that each picture begins with.
     void setProjection(double near, double far);
+    const osg::Matrixd& projection() const { return _projection; }
 
     /// How long labels take to fade in, milliseconds.
     int fading = 0;
