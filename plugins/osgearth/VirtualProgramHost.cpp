@@ -52,10 +52,12 @@ osg::ref_ptr<osg::StateSet> VirtualProgramHost::addition(const ShaderTexts& text
     osg::ref_ptr<VirtualProgram> program = new VirtualProgram;
     program->setName("osgGeoFX");
     program->setInheritShaders(true);
+    // Before osgEarth's lines and points, at FLT_MAX, which widen what they draw about the place that they get here.
+    constexpr float beforeLast = 1e30f;
     program->setFunction("geofx_osgearth_vertex",
                          "#define GEOFX_HOST_NORMAL\n#define GEOFX_HOST_COARSE_TILES\n" + texts.vertex +
                              vertexCall,
-                         VirtualProgram::LOCATION_VERTEX_VIEW, FLT_MAX);
+                         VirtualProgram::LOCATION_VERTEX_VIEW, beforeLast);
     program->setFunction("geofx_osgearth_normal", normalCall, VirtualProgram::LOCATION_FRAGMENT_LIGHTING,
                          -FLT_MAX);
     program->setFunction("geofx_osgearth_color", normalOfHost + texts.fragment + colorCall,
