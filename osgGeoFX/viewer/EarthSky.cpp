@@ -31,10 +31,12 @@ struct NoBound : public osg::Drawable::ComputeBoundingBoxCallback
 class PlaceOfEye : public osg::NodeCallback
 {
 public:
-    PlaceOfEye(const osg::EllipsoidModel& ellipsoid, const osg::Vec3& air, double haze, EffectScene* scene)
+    PlaceOfEye(const osg::EllipsoidModel& ellipsoid, const osg::Vec3& air, double haze, EffectScene* scene,
+               osg::StateSet& look)
         : _scale(1.0 / ellipsoid.getRadiusEquator(), 1.0 / ellipsoid.getRadiusEquator(),
                  1.0 / ellipsoid.getRadiusPolar()),
-          _air(air), _haze(static_cast<float>(haze * ellipsoid.getRadiusEquator())), _scene(scene)
+          _air(air), _haze(static_cast<float>(haze * ellipsoid.getRadiusEquator())), _scene(scene),
+          _look(&look)
     {
     }
 
@@ -57,8 +59,10 @@ public:
         state->addUniform(new osg::Uniform("geofx_earthRise", static_cast<float>(eye.length2() - 1.0)));
         state->addUniform(new osg::Uniform("geofx_earthAir", _air));
         state->addUniform(new osg::Uniform("geofx_earthHaze", _haze));
+        cull->pushStateSet(_look);
         cull->pushStateSet(state);
         traverse(node, visitor);
+        cull->popStateSet();
         cull->popStateSet();
     }
 
@@ -67,6 +71,7 @@ private:
     const osg::Vec3 _air;
     const float _haze;
     const osg::observer_ptr<EffectScene> _scene;
+    const osg::ref_ptr<osg::StateSet> _look;
 };
 
 } // namespace
@@ -91,12 +96,8 @@ osg::ref_ptr<osg::Node> makeEarthSky(const osg::EllipsoidModel& ellipsoid, const
     picture->setComputeBoundingBoxCallback(new NoBound);
     picture->setCullingActive(false);
 
-    osg::ref_ptr<osg::Group> sky = new osg::Group;
-    sky->setName("sky of the Earth");
-    sky->setCullingActive(false);
-    sky->addChild(picture);
-    sky->setCullCallback(new PlaceOfEye(ellipsoid, air, hazeDensity(visibility), scene));
-    osg::StateSet* state = sky->getOrCreateStateSet();
+    // No node's, since OSG compiles a scene's programs ahead and gives them uniforms of nodes that stand elsewhere, such as osgEarth's.
+    const osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
     state->setAttributeAndModes(
         ShaderLibrary::createProgram("sky of the Earth", "stages/earthsky.vert", "stages/earthsky.frag"),
         osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
@@ -105,6 +106,12 @@ osg::ref_ptr<osg::Node> makeEarthSky(const osg::EllipsoidModel& ellipsoid, const
     state->setMode(GL_CULL_FACE, osg::StateAttribute::OFF | osg::StateAttribute::PROTECTED);
     state->setMode(GL_BLEND, osg::StateAttribute::OFF | osg::StateAttribute::PROTECTED);
     state->setRenderBinDetails(FIRST_BIN, "RenderBin");
+
+    osg::ref_ptr<osg::Group> sky = new osg::Group;
+    sky->setName("sky of the Earth");
+    sky->setCullingActive(false);
+    sky->addChild(picture);
+    sky->setCullCallback(new PlaceOfEye(ellipsoid, air, hazeDensity(visibility), scene, *state));
     return sky;
 }
 

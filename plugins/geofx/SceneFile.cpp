@@ -316,9 +316,10 @@ SceneResult parseEngineScene(const SceneElement& part, const std::string& text, 
             result.errors.push_back(scene.place.message(
                 "the map's tiles do not say what lies on the ground; expected: bends without coverMap."));
     }
-    if (scene.background)
+    if (scene.background && !scene.background->sky)
         result.errors.push_back(scene.background->place.message(
-            "the background is the program's; expected: no <background> in an .earth file."));
+            "a background without a sky is the program's; expected: sky=\"true\", or no <background> in an "
+            ".earth file."));
     if (scene.map)
         result.errors.push_back(scene.map->place.message("names and lines are put on terrains that the scene "
                                                          "itself names; expected: layers of the osgEarth map "

@@ -14,6 +14,7 @@
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/scene/EngineTiles.h>
+#include <osgGeoFX/viewer/EarthSky.h>
 
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
@@ -85,6 +86,15 @@ public:
         for (const std::string& error : read.errors)
             OSG_WARN << "osgGeoFX: " << error << std::endl;
         if (!map || !read.scene) return false;
+        if (map->getNumParents() == 0)
+        {
+            OSG_WARN
+                << "osgGeoFX: " << _config.getConfig().referrer()
+                << ": the map has no parent, so the effects of <geofx> have no place above it; add the map "
+                   "to a group, such as a viewer's scene, before the extension."
+                << std::endl;
+            return false;
+        }
         if (osgEarth::findFirstParentOfType<EffectScene>(map))
         {
             OSG_WARN << "osgGeoFX: " << _config.getConfig().referrer()
@@ -127,6 +137,7 @@ public:
         _culling->add(*map);
         _raiser = new HorizonRaiser;
         map->getLayerNodeGroup()->addCullCallback(_raiser);
+        if (read.scene->background) addSky(*read.scene->background, *map, *scene);
         return true;
     }
 
@@ -139,6 +150,13 @@ public:
         if (map && _heights && map->getTerrainEngine())
             map->getTerrainEngine()->removeCreateTileModelCallback(_heights);
         _heights = nullptr;
+        osg::ref_ptr<osg::Group> sky;
+        if (_sky.lock(sky))
+        {
+            sky->removeChild(0, 1); // the sky itself
+            osgEarth::removeGroup(sky.get());
+        }
+        _sky = nullptr;
         osg::ref_ptr<EffectScene> scene;
         if (!_scene.lock(scene)) return false;
         osgEarth::removeGroup(scene.get());
@@ -241,6 +259,28 @@ private:
                 << std::endl;
     }
 
+    /// A bend shows what lies below the horizon of osgEarth's own sky, which draws nothing there.
+    void addSky(const SceneBackground& background, const osgEarth::MapNode& map, EffectScene& scene)
+    {
+        if (!map.isGeocentric())
+        {
+            OSG_WARN << "osgGeoFX: "
+                     << background.place.message(
+                            "the map is no round Earth to put a sky around, so the sky "
+                            "is left out; expected: no sky, or a map that is geocentric.")
+                     << std::endl;
+            return;
+        }
+        const SceneColor& air = background.color;
+        const osg::ref_ptr<osg::Node> sky =
+            makeEarthSky(osg::EllipsoidModel(), osg::Vec3(osg::Vec3d(air[0], air[1], air[2])),
+                         background.visibility.value_or(DEFAULT_VISIBILITY), &scene);
+        const osg::ref_ptr<osg::Group> both = new osg::Group;
+        osgEarth::insertParent(both.get(), &scene);
+        both->insertChild(0, sky);
+        _sky = both;
+    }
+
     bool takeUnits(osgEarth::MapNode& map, std::string& error)
     {
         const osgEarth::TerrainEngine* engine = map.getTerrainEngine();
@@ -255,6 +295,7 @@ private:
     osg::ref_ptr<HorizonRaiser> _raiser;
     osg::ref_ptr<TileCulling> _culling;
     osg::ref_ptr<HeightWatch> _heights;
+    osg::observer_ptr<osg::Group> _sky; ///< the kit's sky, and the scene; null for none
     HostUnits _units;
 };
 #pragma GCC diagnostic pop

@@ -211,6 +211,54 @@ TEST_F(EarthMaps, HeightsOutsideOfWhatIsStatedAreASentence)
     EXPECT_TRUE(said("").empty());
 }
 
+// A bend shows what lies below osgEarth's horizon, where its own sky has no color.
+TEST_F(EarthMaps, TheSkyComesDownWithTheSkyline)
+{
+    NotifyWatch watch;
+    const std::string bent = extension("<birdsEyeView/>");
+    std::string sky = bent;
+    sky.insert(sky.find("<effects>"), "<background color=\"#b9d3ea\" sky=\"true\"/>");
+    ASSERT_TRUE(show(bent));
+    const osg::ref_ptr<osg::Image> plain = draw(10.5, 0.2, 9000.0, 0.0, -40.0);
+    ASSERT_TRUE(show(sky));
+    const osg::ref_ptr<osg::Image> picture = draw(10.5, 0.2, 9000.0, 0.0, -40.0);
+    const osg::Vec4 clear = camera().getClearColor() * 255.0f;
+    const auto isClear = [&](const osg::Image& image, int x, int y)
+    {
+        const unsigned char* const pixel =
+            image.data(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
+        return std::abs(static_cast<float>(pixel[0]) - clear.r()) < 2.0f &&
+               std::abs(static_cast<float>(pixel[2]) - clear.b()) < 2.0f;
+    };
+    int above = 0, left = 0;
+    for (int x = 0; x < WIDTH; ++x)
+        for (int y = 0; y < HEIGHT; ++y)
+        {
+            above += isClear(*plain, x, y) ? 1 : 0;
+            if (!isClear(*plain, x, y)) continue;
+            left += isClear(*picture, x, y) ? 1 : 0;
+            const unsigned char* const pixel =
+                picture->data(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
+            EXPECT_GT(pixel[2], pixel[0] + 20) << x << ' ' << y;
+        }
+    EXPECT_GT(above, WIDTH * HEIGHT / 20);
+    EXPECT_LT(left, above / 50);
+    // The sky goes with the extension.
+    map().clearExtensions();
+    EXPECT_FALSE(scene());
+    EXPECT_EQ(map().getNumParents(), 1u);
+    // The plane has no sky, and a background without one is the program's.
+    setProfile("plate-carre");
+    std::vector<std::string> said = watch.messagesOf([&] { EXPECT_TRUE(show(sky)); });
+    ASSERT_EQ(said.size(), 1u) << ::testing::PrintToString(said);
+    EXPECT_NE(said[0].find("the sky is left out"), std::string::npos) << said[0];
+    EXPECT_TRUE(scene());
+    sky.replace(sky.find(" sky=\"true\""), 11, "");
+    said = watch.messagesOf([&] { EXPECT_TRUE(show(sky)); });
+    ASSERT_EQ(said.size(), 1u) << ::testing::PrintToString(said);
+    EXPECT_NE(said[0].find("expected: sky=\"true\""), std::string::npos) << said[0];
+}
+
 // The globe of a map without layers is smooth, and one without terrain shows nothing.
 TEST_F(EarthMaps, MapsWithoutLayersOrTerrainSayNothing)
 {
