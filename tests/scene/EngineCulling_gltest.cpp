@@ -187,7 +187,7 @@ TEST_F(EngineCulling, TilesThatAreOutOfSightAreToldFromOthers)
         for (Effect* each : effects)
             _scene->addEffect(each);
         Random random(8);
-        int all = 0, told = 0;
+        int all = 0, told = 0, drawn = 0, kept = 0, needed = 0;
         for (int i = 0; i < 10; ++i)
         {
             SCOPED_TRACE("camera " + std::to_string(i));
@@ -199,14 +199,24 @@ TEST_F(EngineCulling, TilesThatAreOutOfSightAreToldFromOthers)
             _engine->asks = true;
             EXPECT_TRUE(same(*draw(), *expected));
             told += _engine->fine;
+            drawn += _engine->drawn;
+            _engine->leavesOut = true;
+            EXPECT_TRUE(same(*draw(), *expected));
+            kept += _engine->drawn;
+            needed += _engine->kept;
+            _engine->leavesOut = false;
         }
         EXPECT_LT(told, all);
         EXPECT_GT(told, 0);
+        EXPECT_LT(kept, drawn);
+        EXPECT_GE(kept, needed);
         for (Effect* each : effects)
             _scene->removeEffect(each);
     }
     osg::ref_ptr<osgUtil::CullVisitor> plain = new osgUtil::CullVisitor;
     EXPECT_FALSE(isTileOutOfSight(*_engine, *plain));
+    EXPECT_FALSE(
+        isBoxOutOfSight(osg::BoundingBox(0.0f, 0.0f, 0.0f, 1.0f, 1.0f, 1.0f), osg::Matrixd(), *plain));
 }
 
 // What the engine gets to cull by contains all that the picture shows, and not much more.

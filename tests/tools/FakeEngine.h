@@ -35,13 +35,14 @@ public:
         }
     }
 
-    bool culls = true;    ///< false: it draws all tiles
-    bool horizon = true;  ///< whether its planet is so small that it leaves out what is beyond the horizon
-    bool asks = false;    ///< whether it draws coarse what the kit says is out of sight
-    int fine = 0;         ///< fine tiles in all traversals of the last frame
-    int drawn = 0;        ///< tiles in all traversals of the last frame
-    osg::Vec3d viewPoint; ///< of the last traversal
-    int kept = 0;         ///< those of which the visitor draws something
+    bool culls = true;      ///< false: it draws all tiles
+    bool horizon = true;    ///< whether its planet is so small that it leaves out what is beyond the horizon
+    bool asks = false;      ///< whether it draws coarse what the kit says is out of sight
+    bool leavesOut = false; ///< whether it does not draw what the kit says is out of sight by its box
+    int fine = 0;           ///< fine tiles in all traversals of the last frame
+    int drawn = 0;          ///< tiles in all traversals of the last frame
+    osg::Vec3d viewPoint;   ///< of the last traversal
+    int kept = 0;           ///< those of which the visitor draws something
 
     void traverse(osg::NodeVisitor& visitor) override
     {
@@ -68,6 +69,7 @@ public:
         {
             const osg::BoundingBox& box = tile.fine->getBoundingBox();
             if (culls && (stack.isCulled(box) || (horizon && belowHorizon(eye, box)))) continue;
+            if (leavesOut && osgGeoFX::isBoxOutOfSight(box, osg::Matrixd(), visitor)) continue;
             ++drawn;
             const bool near = cull->getDistanceToViewPoint(box.center(), true) < static_cast<float>(_range) &&
                               !(asks && osgGeoFX::isTileOutOfSight(*tile.fine, visitor));
