@@ -36,7 +36,8 @@ public:
         double allowed;     ///< pixels that divided triangles may be off; 0 if none is divided
     };
 
-    BendSnapshot(const glsl::geofx_BendView& view, const Look& look) : _view(view), _look(look)
+    /// `globe`: the radius of the globe, metres; 0 for a plane.
+    BendSnapshot(const glsl::geofx_BendView& view, const Look& look, double globe) : _view(view), _look(look)
     {
         const glsl::geofx_Bend& bend = view.bend;
         const double d = std::max(bend.size, 1e-9);
@@ -58,6 +59,12 @@ public:
             _curvature = _turnRate;
         }
         fillTable();
+        const glm::dvec2 eye = profile({});
+        // Where T is rolled up, its normals spread below it, so the globe stays one body. For an eye that is near the zone, as seen
+        // from the middle of the globe, lines of sight to what is deeper than that run through this body.
+        constexpr double near = 0.05, deep = 1.25, mostAngle = 2.1;
+        const double away = glm::length(eye) + bend.size;
+        if (bend.angle > 0.0 && bend.angle < mostAngle && away < near * globe) _hidden = deep * globe;
     }
 
     osg::Vec3d roughly(const osg::Vec3d& position) const override
@@ -147,7 +154,14 @@ public:
         if (s + ball.radius <= 0.0) return 1.0;
         return s - ball.radius >= _view.bend.size ? _look.contextDetail : _look.transitionDetail;
     }
-    bool looksAtBoxes() const override { return _look.foldPossible; }
+    bool hides(const Ball& ball, const osg::Vec2d&) const override
+    {
+        const glm::dvec2 at = profile(ball.center);
+        const double besideZone = 0.1 * _hidden;
+        return _hidden > 0.0 && at.y + ball.radius < -_hidden && at.x + ball.radius > -besideZone &&
+               at.x - ball.radius < _view.bend.size + besideZone;
+    }
+    bool looksAtBoxes() const override { return _look.foldPossible || _hidden > 0.0; }
     std::string complaint(const EyeBox& box) const override
     {
         if (!_look.foldPossible || reach(box.ball()) != Reach::Curved) return {};
@@ -358,6 +372,8 @@ private:
     double _curvature = 0.0;  ///< of |C''|, at most
     double _turnRate = 0.0;   ///< of the frame, at most
     double _turnChange = 0.0; ///< of the turn rate's derivative, at most
+    double _hidden =
+        0.0; ///< from so far below T on the globe hides what is around the zone, metres; 0: nothing
 };
 
 } // namespace
@@ -519,7 +535,8 @@ osg::ref_ptr<const DeformationSnapshot> PerspectiveBend::snapshot(const ViewGeom
         {_focusSaturation, _focusBrightness, _mapPlace == FOCUS ? 1.0 : 0.0, 0.0},
         foldPossible,
         tessellates() ? _tessellationPixels : 0.0};
-    return new BendSnapshot(bend, look);
+    return new BendSnapshot(bend, look,
+                            view.ground.ellipsoid ? view.ground.ellipsoid->getRadiusEquator() : 0.0);
 }
 
 std::string PerspectiveBend::fragmentFile() const

@@ -3,6 +3,7 @@
 //
 // What the horizon of a deformed globe hides, and the plane at which engines clip what they draw without a depth test.
 #include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
@@ -90,6 +91,48 @@ TEST_F(GlobeHorizonTest, PlaneIsThatOfThePlainGlobeWhereNothingMoves)
             EXPECT_EQ(*plane * place > 0.0, share < 1.0) << share;
         }
     }
+}
+
+// A bend that rolls the ground up turns the far side of the Earth around its zone, too, into the picture. The Earth is before it.
+TEST_F(GlobeHorizonTest, PedestriansSeeNothingThroughTheEarth)
+{
+    Random random(19);
+    int hidden = 0, deep = 0;
+    for (int i = 0; i < 300; ++i)
+    {
+        while (_scene->getNumEffects() > 0)
+            _scene->removeEffect(_scene->getEffect(0));
+        const osg::ref_ptr<PedestrianView> pedestrian = new PedestrianView;
+        const PerspectiveBend::Curve curves[] = {PerspectiveBend::BEZIER, PerspectiveBend::ARC_LENGTH,
+                                                 PerspectiveBend::CIRCULAR_ARC};
+        pedestrian->setCurve(curves[i % 3]);
+        _scene->addEffect(pedestrian);
+        const osg::Vec3d eye = placeAt(0.0, 0.0, random.logarithmic(60.0, 3e5));
+        const osg::Matrixd view = lookFrom(eye, random.uniform(0.1, 0.8));
+        const osg::ref_ptr<const DeformationChain> chain = _scene->deformation(view, _projection);
+        if (chain->empty()) continue;
+        const osg::Vec3d center = osg::Vec3d() * view;
+        const double polar = _ellipsoid->getRadiusPolar();
+        for (int j = 0; j < 40; ++j)
+        {
+            // To the east and the west of the zone, nearby and down to the other side.
+            const double turn = j % 4 == 0 ? random.uniform(-0.4, 0.4) : random.uniform(0.5, 1.5) * osg::PI;
+            const osg::Vec3d place =
+                placeAt(random.uniform(-0.02, 0.02), turn, random.uniform(0.0, 9000.0)) * view;
+            const bool isHidden = chain->hides({place, random.logarithmic(1.0, 1e4)}, {});
+            hidden += isHidden ? 1 : 0;
+            deep += std::cos(turn) < -0.3 ? 1 : 0;
+            if (!isHidden) continue;
+            // Some part of the line of sight is within the undeformed Earth, below all ground.
+            const osg::Vec3d seen = chain->deform(place);
+            double least = HUGE_VAL;
+            for (int k = 1; k < 200; ++k)
+                least = std::min(least, (chain->undeform(seen * (k / 200.0)) - center).length());
+            EXPECT_LT(least, 0.985 * polar) << eye.length() - 6378137.0 << ' ' << turn;
+        }
+    }
+    EXPECT_GT(hidden, deep / 2);
+    EXPECT_GT(deep, 2000);
 }
 
 TEST_F(GlobeHorizonTest, PlaneHasAllThatIsSeenOnItsPositiveSide)

@@ -2,8 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // The blocks of ground from which a proxy frustum is made, and proxies of scenes of any size.
+#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/scene/detail/GlobeHorizon.h>
 #include <osgGeoFX/scene/detail/GroundShell.h>
 #include <osgGeoFX/scene/detail/ProxyFrustum.h>
+#include <osgGeoFX/scene/detail/Visibility.h>
 #include <tools/RandomSamples.h>
 
 #include <gtest/gtest.h>
@@ -12,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -122,5 +130,84 @@ TEST(ProxyFrustumTest, SmallTerrainsHaveOne)
         const osg::Vec3d ahead = osg::Vec3d(0.0, 0.0, -0.9 * radius) * proxy.projection();
         for (int axis = 0; axis < 3; ++axis)
             EXPECT_LE(std::abs(ahead[axis]), 1.0) << "of a terrain of " << radius << " m";
+    }
+}
+
+// So that a far plane by them leaves a near plane before the foreground.
+TEST(ProxyFrustumTest, DepthsOfAGlobeAreThoseOfItsGround)
+{
+    const Ground ground = earth(-500.0, 4400.0);
+    const osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
+    exaggeration->setFactor(2.0);
+    const osg::ref_ptr<Effect> effects[] = {exaggeration, new BirdsEyeView, new PedestrianView,
+                                            new PanoramaMap};
+    const osg::Matrixd projection = osg::Matrixd::perspective(40.0, 1.8, 1.0, 1e8);
+    Random random(23);
+    for (const osg::ref_ptr<Effect>& effect : effects)
+    {
+        const osg::ref_ptr<EffectScene> scene = new EffectScene;
+        const osg::ref_ptr<osg::CoordinateSystemNode> world = new osg::CoordinateSystemNode;
+        world->setEllipsoidModel(new osg::EllipsoidModel);
+        scene->addChild(world);
+        EffectScene::GroundDescription heights;
+        heights.minHeight = ground.minHeight;
+        heights.maxHeight = ground.maxHeight;
+        ASSERT_TRUE(scene->setGround(heights));
+        scene->addEffect(effect);
+        for (const double height : {200.0, 800.0, 4500.0, 50e3})
+        {
+            SCOPED_TRACE(std::string(effect->className()) + " from " + std::to_string(height));
+            constexpr double latitude = 0.8;
+            osg::Matrixd place;
+            ground.ellipsoid->computeLocalToWorldTransformFromLatLongHeight(latitude, 0.0, height, place);
+            const osg::Matrixd view = osg::Matrixd::inverse(
+                osg::Matrixd::rotate(osg::DegreesToRadians(75.0), osg::Vec3d(1.0, 0.0, 0.0)) * place);
+            const osg::ref_ptr<const DeformationChain> chain = scene->deformation(view, projection);
+            if (chain->empty()) continue;
+            const ViewGeometry geometry(view, projection, ground);
+            const GlobeHorizon horizon(*chain, geometry, {});
+            osg::Polytope planes;
+            planes.setToUnitFrustum(true, true);
+            planes.transformProvidingInverse(projection);
+            Visibility sight;
+            Visibility::Camera camera;
+            camera.projection = projection;
+            camera.planes = &planes;
+            sight.set(camera);
+            const auto isOut = [&](const EyeBox& box)
+            {
+                return horizon.hides(box.ball()) || sight.outOfSight(*chain, box, sight.all());
+            };
+            const ProxyFrustum::Terrain terrain = {
+                osg::BoundingSphere(osg::Vec3(), 6.4e6f), view,    osg::Matrixd(), geometry.up, ground,
+                {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}, HUGE_VAL};
+            const ProxyFrustum proxy(
+                terrain, isOut, [&](const EyeBox& box) { return sight.depthsOf(*chain, box); },
+                [](const EyeBox&) { return false; });
+            double farthest = 0.0, nearest = HUGE_VAL;
+            for (int i = 0; i < 20000; ++i)
+            {
+                const double turn = random.logarithmic(1e-6, 0.3), bearing = random.uniform(-1.0, 1.0);
+                osg::Vec3d at;
+                ground.ellipsoid->convertLatLongHeightToXYZ(
+                    latitude + turn * std::cos(bearing), turn * std::sin(bearing) / std::cos(latitude),
+                    i % 2 ? ground.minHeight : ground.maxHeight, at.x(), at.y(), at.z());
+                const osg::Vec3d seen = at * view;
+                if (chain->hides({seen, 0.0}, {}) || horizon.hides({seen, 0.0})) continue;
+                const osg::Vec3d clip = chain->deform(seen) * projection;
+                const double depth = -chain->deform(seen).z();
+                if (!(depth > 0.0) || !(std::max(std::abs(clip.x()), std::abs(clip.y())) < 1.0)) continue;
+                farthest = std::max(farthest, depth);
+                if (i % 2) nearest = std::min(nearest, depth);
+            }
+            EXPECT_GE(proxy.depths().second, farthest);
+            // By OSG's ratio of near and far.
+            EXPECT_LE(0.0005 * proxy.depths().second, nearest);
+            const bool isTight = effect->className() != std::string("PanoramaMap") && height < 10e3;
+            if (isTight)
+            {
+                EXPECT_LE(proxy.depths().second, 1.3 * farthest);
+            }
+        }
     }
 }

@@ -157,7 +157,7 @@ std::vector<std::size_t> ProxyFrustum::worstCells() const
         return measure < ofShapes ? cell.reach[measure / sides][measure % sides]
                                   : cell.depths[measure - ofShapes];
     };
-    std::vector<std::size_t> worst;
+    std::vector<std::size_t> worst, deepest;
     bool endless = false;
     for (std::size_t measure = 0; measure < measures && !_cells.empty(); ++measure)
     {
@@ -169,20 +169,25 @@ std::vector<std::size_t> ProxyFrustum::worstCells() const
                 furthest = j;
         }
         if (!(_cells[furthest].coarseness > fineness)) continue;
-        // As long as something has no end on a side, nothing but depths matters beside it.
-        const bool isDepth = measure >= ofShapes;
-        const bool hasNoEnd = !isDepth && std::isinf(reach(_cells[furthest], measure));
+        if (measure >= ofShapes)
+        {
+            deepest.push_back(furthest);
+            continue;
+        }
+        // As long as something has no end on a side, no other side matters.
+        const bool hasNoEnd = std::isinf(reach(_cells[furthest], measure));
         if (hasNoEnd && !endless) worst.clear();
         endless = endless || hasNoEnd;
-        if (isDepth || hasNoEnd == endless) worst.push_back(furthest);
+        if (hasNoEnd == endless) worst.push_back(furthest);
     }
-    // The coarsest ones first, so that no measure uses up the steps of another one.
+    // The coarsest ones first, so that no side uses up the steps of another one. Depths take few.
     double coarsest = 0.0;
     for (const std::size_t each : worst)
         coarsest = std::max(coarsest, _cells[each].coarseness);
     worst.erase(std::remove_if(worst.begin(), worst.end(),
                                [&](std::size_t each) { return _cells[each].coarseness < 0.5 * coarsest; }),
                 worst.end());
+    worst.insert(worst.end(), deepest.begin(), deepest.end());
     std::sort(worst.begin(), worst.end(), std::greater<>());
     worst.erase(std::unique(worst.begin(), worst.end()), worst.end());
     return worst;
