@@ -36,7 +36,7 @@ public:
     static std::optional<osg::Matrixd> bring(EffectScene& scene, const osg::Camera& camera,
                                              const osg::Matrixd& view, const osg::Vec3d& world,
                                              const osg::Vec2d& pixel);
-    /// The same for cameras that move by other rules: how far one goes to the right and ahead, metres. `viewAt` gives its view matrix
+    /// As bring(), for cameras that move by other rules: how far one goes to the right and ahead, metres. `viewAt` gives its view matrix
     /// after such a way; `step`, metres, is a way after which the picture differs a little.
     static std::optional<osg::Vec2d> wayOf(EffectScene& scene, const osg::Camera& camera,
                                            const std::function<osg::Matrixd(const osg::Vec2d& way)>& viewAt,
