@@ -29,7 +29,7 @@ const char* const remedy =
     "put it beside the KML file or below; or, if you trust the file, start the program with "
     "--allow-outside.";
 
-/// A file without a fault.
+/// Nothing is to be shown, and lines, areas and points may be.
 class NoOverlays : public BuildError
 {
 public:
@@ -58,7 +58,7 @@ public:
                 throw BuildError(_file + ": it has more than " + std::to_string(mostOverlays) +
                                  " ground overlays; split it, or make one raster of them with gdalbuildvrt.");
         }
-        if (_found.empty() && !_firstFault.empty()) throw BuildError(_firstFault);
+        if (_found.empty() && !_firstFault.empty()) throw NoOverlays(_firstFault);
         if (_found.empty())
             throw NoOverlays(_file +
                              ": it has no ground overlays; its lines are read with --route or --lines, its "

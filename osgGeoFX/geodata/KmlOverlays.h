@@ -60,7 +60,7 @@ struct OSGGEOFXDATA_EXPORT KmlOverlays
     /// Appends the overlays of a file, in the order in which they are drawn. False, with a sentence in `error` that names
     /// file, line and remedy, if it cannot be used or has none; `overlays` stays unchanged then. `notices` gets sentences
     /// on what was left out, `files` the files on disk that were read or are named as pictures, and `isNone` whether the only fault is that there are
-    /// no overlays.
+    /// no overlays, or that all were left out.
     static bool read(const std::string& file, bool allowOutside, std::vector<KmlOverlay>& overlays,
                      std::vector<std::string>& notices, std::string& error,
                      std::vector<std::string>* files = nullptr, bool* isNone = nullptr);

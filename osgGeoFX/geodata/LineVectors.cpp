@@ -37,6 +37,7 @@ public:
             layer, _target.crs, _file,
             [&](const OGRFeature& feature, const OGRGeometry&, OGRCoordinateTransformation& toTarget)
             {
+                if (isGroundOverlay(feature)) return;
                 MapLine line;
                 line.name = name.of(feature);
                 line.style = style.of(feature);

@@ -67,11 +67,12 @@ public:
             else
                 readRaster();
         }
-        catch (const BuildError&)
+        catch (const BuildError& fault)
         {
-            const bool mayBeVectors = isNone || !KmlOverlays::isKml(_file);
-            if (!mayBeVectors || !TiledVectors::isVectors(_file)) throw;
-            readVectors();
+            const bool isKml = KmlOverlays::isKml(_file);
+            if ((isKml && !isNone) || !TiledVectors::isVectors(_file)) throw;
+            // Left-out pictures say more than that there is nothing else.
+            readVectors(isKml && !notices.empty() ? fault.what() : "");
         }
     }
 
@@ -169,7 +170,7 @@ private:
         _texels += static_cast<double>(image.s()) * image.t();
     }
 
-    /// `isNone`: whether it has no overlays, and no other fault.
+    /// `isNone`: whether it has no overlays or all are left out, and no other fault.
     void readKml(bool& isNone)
     {
         std::vector<KmlOverlay> found;
@@ -214,7 +215,11 @@ private:
                                   (leftOut == mostNotices ? " So are others, which are not named." : ""));
             }
         }
-        if (overlays.empty() && !firstFault.empty()) throw BuildError(firstFault);
+        if (overlays.empty() && !firstFault.empty())
+        {
+            isNone = true;
+            throw BuildError(firstFault);
+        }
     }
 
     void addKml(const KmlOverlay& each, const OverlayRaster::Options& options)
@@ -404,12 +409,13 @@ private:
         notices.insert(notices.end(), _sld.notices.begin(), _sld.notices.end());
     }
 
-    void readVectors()
+    /// `otherwise`: the fault if there are none; empty for their own.
+    void readVectors(const std::string& otherwise = {})
     {
         std::string error;
         const std::optional<TiledVectors> vectors =
             TiledVectors::read(_file, {_options.layer, _options.style, _options.allowOutside}, error);
-        if (!vectors) throw BuildError(error);
+        if (!vectors) throw BuildError(otherwise.empty() ? error : otherwise);
         notices.insert(notices.end(), vectors->notices().begin(), vectors->notices().end());
         const GroundReach reach{vectors->middle(), vectors->radius(), vectors->texel()};
         if (!_globe && frames.empty()) frames.push_back(originFor(*vectors));

@@ -247,13 +247,16 @@ void checkCommas(const std::string& file)
 }
 
 /// What GDAL should know of a format.
-CPLStringList vectorOptions(const std::string& format)
+CPLStringList vectorOptions(const std::string& format, const std::string& file)
 {
     CPLStringList options;
     if (format == "CSV")
         for (const char* const* each = csvOptions; *each; ++each)
             options.AddString(*each);
     if (format == "OSM" && !osmLayout().empty()) options.SetNameValue("CONFIG_FILE", osmLayout().c_str());
+    // Servers hand out XML in any order; packed extracts are sorted.
+    if (format == "OSM" && !EQUAL(CPLGetExtension(file.c_str()), "pbf"))
+        options.SetNameValue("USE_CUSTOM_INDEXING", "NO");
     return options;
 }
 
@@ -290,7 +293,7 @@ DatasetPtr openVectors(const std::string& file)
     GDALDriverH const driver = GDALIdentifyDriverEx(file.c_str(), GDAL_OF_VECTOR, nullptr, nullptr);
     const std::string format = driver ? GDALGetDriverShortName(driver) : "";
     DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR, nullptr,
-                                         vectorOptions(format).List()));
+                                         vectorOptions(format, file).List()));
     if (dataset && format == "CSV") placeCsv(*dataset, file);
     if (dataset && format == "GPX") checkCommas(file);
     if (!dataset && !driver && GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER, nullptr, nullptr))
@@ -314,6 +317,15 @@ void forEachLayer(GDALDataset& dataset, const std::string& layer, const std::str
     if (named->GetGeomType() == wkbNone)
         throw BuildError(file + ": its layer " + layer + " is a table without places; name another layer.");
     take(*named);
+}
+
+bool isGroundOverlay(const OGRFeature& feature)
+{
+    const OGRFeatureDefn& fields = *feature.GetDefnRef();
+    const int icon = fields.GetFieldIndex("icon");
+    if (icon < 0 || fields.GetFieldIndex("drawOrder") < 0) return false;
+    return *feature.GetFieldAsString(icon) &&
+           wkbFlatten(feature.GetGeometryRef()->getGeometryType()) == wkbPolygon;
 }
 
 void forEachFeature(

@@ -129,6 +129,9 @@ DatasetPtr openVectors(const std::string& file);
 void forEachLayer(GDALDataset& dataset, const std::string& layer, const std::string& file,
                   const std::function<void(OGRLayer&)>& take);
 
+/// Whether a feature is a picture on the ground of KML, which GDAL hands out as the area of its box.
+bool isGroundOverlay(const OGRFeature& feature);
+
 /// What forEachFeature() does with long lines.
 enum class LongLines
 {

@@ -116,7 +116,7 @@ private:
             [&](const OGRFeature& feature, const OGRGeometry& geometry,
                 OGRCoordinateTransformation& toDegrees)
             {
-                if (geometry.IsEmpty()) return;
+                if (geometry.IsEmpty() || isGroundOverlay(feature)) return;
                 ++_features;
                 _toDegrees = &toDegrees;
                 take(const_cast<OGRFeature&>(feature), geometry, style);
@@ -129,6 +129,7 @@ private:
     static double longestEdge(OGRLayer& layer, const OGRSpatialReference* srs)
     {
         OGREnvelope box;
+        const GdalErrorScope quiet; // who reads the features tells
         if (!srs || layer.GetExtent(&box, TRUE) != OGRERR_NONE) return 0.0;
         const double metres = srs->IsGeographic() ? earthRadius * osg::PI / 180.0 : srs->GetLinearUnits();
         const double size = std::hypot(box.MaxX - box.MinX, box.MaxY - box.MinY) * metres;
