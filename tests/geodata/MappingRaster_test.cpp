@@ -458,6 +458,54 @@ TEST_F(MappingRasterValues, WithoutDataAreNaN)
     }
 }
 
+// A satellite above the equator sees half of the Earth; GDAL finds no place in its picture for a window of the other half.
+TEST_F(MappingRasterValues, BeyondTheHorizonOfASatelliteAreNaN)
+{
+    TestRaster source(60, 60);
+    source.placed(-5.5e6, 5.5e6, 1.1e7 / 60.0, 1.1e7 / 60.0)
+        .crs("+proj=geos +h=35785831 +lon_0=0 +sweep=y +ellps=WGS84 +units=m")
+        .fill([](int, int, int) { return 200.0; });
+    const std::string file = source.write(_folder / "disk.tif");
+    MappingRaster::Options options;
+    options.window = MappingRaster::Window{{-1e5, -1e5}, {1e5, 1e5}, 1e4};
+    std::string error;
+    const auto seen = MappingRaster::read(file, globeAt(10.0, 20.0), options, error);
+    ASSERT_TRUE(seen) << error;
+    const auto hidden = MappingRaster::read(file, globeAt(170.0, 20.0), options, error);
+    ASSERT_TRUE(hidden) << error;
+    for (int row = 0; row < 20; ++row)
+        for (int column = 0; column < 20; ++column)
+        {
+            EXPECT_NEAR(value(*seen, column, row), 200.0, 1e-6) << column << " " << row;
+            EXPECT_TRUE(std::isnan(value(*hidden, column, row))) << column << " " << row;
+        }
+}
+
+// Rounded degrees add up to a little more than a circle, and some files repeat the first column.
+TEST_F(MappingRasterValues, GoAroundTheGlobeAlsoWhereTheyAreMoreThanACircle)
+{
+    for (const int columns : {54, 55})
+    {
+        SCOPED_TRACE(columns);
+        TestRaster source(columns, 27);
+        source.placed(20.0, 90.0, 6.66667, 6.66667)
+            .crs("EPSG:4326")
+            .fill([](int column, int, int) { return 100.0 + column % 54; });
+        const std::string file = source.write(_folder / "around.tif");
+        MappingRaster::Options options;
+        options.window = MappingRaster::Window{{-1e4, -1e4}, {1e4, 1e4}, 1e3};
+        for (const int column : {0, 20, 26, 40, 53})
+        {
+            std::string error;
+            const double longitude = 20.0 + (column + 0.5) * 6.66667;
+            const auto read =
+                MappingRaster::read(file, globeAt(std::remainder(longitude, 360.0), 10.0), options, error);
+            ASSERT_TRUE(read) << error;
+            EXPECT_NEAR(value(*read, 10, 10), 100.0 + column, 0.1) << column;
+        }
+    }
+}
+
 TEST_F(MappingRasterValues, AroundATurnedRasterAreNaN)
 {
     TestRaster source(20, 20);

@@ -283,6 +283,68 @@ TEST_F(RasterFiles, CurvedGridsGoByTheirPlaces)
                 3.0 * cellOfHeights);
 }
 
+// Where the two variables are called lat and lon, GDAL takes them for the numbers along the axes.
+TEST_F(RasterFiles, CurvedGridsMayCallTheirPlacesLatAndLon)
+{
+    const std::filesystem::path file = folder() / "curved.nc";
+    {
+        Writer writer(file);
+        std::vector<double> longitudes, latitudes, values;
+        for (int time = 0; time < 2; ++time)
+            for (int row = 0; row < rows; ++row)
+                for (int column = 0; column < columns; ++column)
+                {
+                    const osg::Vec2d place = curvedAt(column, row);
+                    if (time == 0) longitudes.push_back(place.x());
+                    if (time == 0) latitudes.push_back(place.y());
+                    values.push_back(heightAt(place.x(), place.y(), 0, time));
+                }
+        const Axis time =
+            writer.axis("time", GDAL_DIM_TYPE_TEMPORAL, {0.0, 6.0}, "hours since 2026-01-12 06:00:00");
+        const Axis y = writer.plain("y", rows), x = writer.plain("x", columns);
+        writer.write("lat", {y, x}, latitudes, "degrees_north");
+        writer.write("lon", {y, x}, longitudes, "degrees_east");
+        writer.write("rain", {time, y, x}, values, "m")
+            ->CreateAttribute("coordinates", {}, GDALExtendedDataType::CreateString(), nullptr)
+            ->Write("time lat lon");
+    }
+    const osg::Vec2d place = curvedAt(20.0, 15.0);
+    MappingFrame frame;
+    frame.origin = LocalOrigin::onGlobe(osg::DegreesToRadians(place.x()), osg::DegreesToRadians(place.y()));
+    std::string error;
+    const auto steps = SequenceRaster::open(file.string(), frame, true, {"rain", 200}, error);
+    ASSERT_TRUE(steps) << error;
+    EXPECT_LT(std::abs(steps->low.x()) + std::abs(steps->high.y()), 1e5) << "it lies where it is";
+    EXPECT_NEAR(steps->highest - steps->lowest,
+                heightAt(curvedAt(39, 29).x(), curvedAt(39, 29).y(), 0, 1) -
+                    heightAt(curvedAt(0, 0).x(), curvedAt(0, 0).y(), 0, 0),
+                90.0);
+}
+
+TEST_F(RasterFiles, ColumnsMayComeBeforeRows)
+{
+    const std::filesystem::path file = folder() / "turned.nc";
+    {
+        Writer writer(file);
+        std::vector<double> longitudes, latitudes, values;
+        for (int column = 0; column < columns; ++column)
+            longitudes.push_back(west + cell * column);
+        for (int row = 0; row < rows; ++row)
+            latitudes.push_back(south + cell * row);
+        for (const double longitude : longitudes)
+            for (const double latitude : latitudes)
+                values.push_back(heightAt(longitude, latitude, 0, 0));
+        const Axis x = writer.axis("lon", GDAL_DIM_TYPE_HORIZONTAL_X, longitudes, "degrees_east");
+        const Axis y = writer.axis("lat", GDAL_DIM_TYPE_HORIZONTAL_Y, latitudes, "degrees_north");
+        writer.write("rain", {x, y}, values, "m")
+            ->CreateAttribute("coordinates", {}, GDALExtendedDataType::CreateString(), nullptr)
+            ->Write("lat lon");
+    }
+    std::string error;
+    EXPECT_NEAR(mapped(file.string(), error), heightAt(someWhere.x(), someWhere.y(), 0, 0), 1.0) << error;
+    EXPECT_NEAR(built(file.string()), heightAt(someWhere.x(), someWhere.y(), 0, 0), 1.0);
+}
+
 TEST_F(RasterFiles, TablesOfAGeoPackage)
 {
     const std::filesystem::path file = folder() / "two.gpkg";

@@ -61,6 +61,24 @@ std::string wktOf(const OGRSpatialReference& srs)
     return wkt;
 }
 
+/// No number anywhere; GDAL leaves alone what has no place in the source.
+DatasetPtr emptyNumbers(const FrameCrs& crs, const osg::Vec2d& low, const osg::Vec2d& high, int width,
+                        int height)
+{
+    GDALDriver* const memory = GetGDALDriverManager()->GetDriverByName("MEM");
+    DatasetPtr empty(memory ? memory->Create("", width, height, 1, GDT_Float64, nullptr) : nullptr);
+    OGRSpatialReference srs;
+    if (!empty || srs.SetFromUserInput(crs.definition.c_str()) != OGRERR_NONE) return nullptr;
+    Transform transform = {low.x(), (high.x() - low.x()) / width, 0.0, high.y(),
+                           0.0,     (low.y() - high.y()) / height};
+    empty->SetProjection(wktOf(srs).c_str());
+    empty->SetGeoTransform(transform.data());
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    empty->GetRasterBand(1)->SetNoDataValue(none);
+    empty->GetRasterBand(1)->Fill(none);
+    return empty;
+}
+
 /// While it lives, GDAL looks on this thread for no file beside the one that it opens.
 class WithoutSidecars
 {
@@ -178,6 +196,7 @@ void FrameRaster::prepare(std::optional<DataLayer::Kind> wanted, bool placed)
     if (top().GetRasterCount() == 0) fail("it holds no raster band; check it with gdalinfo");
     checkSize();
     if (placed) checkPlace();
+    if (placed) closeCircle();
     if (GDALDataTypeIsComplex(band().GetRasterDataType()))
         fail("its values are complex numbers; export a real band with gdal_translate -ot Float32");
     kind = wanted.value_or(RasterColors::areIn(top()) ? DataLayer::COLOR : DataLayer::VALUE);
@@ -201,6 +220,25 @@ void FrameRaster::checkPlace() const
     const OGRSpatialReference* srs = placed ? top().GetSpatialRef() : top().GetGCPSpatialRef();
     if (!srs || srs->IsEmpty() || srs->IsLocal())
         fail("it has no coordinate reference system; name it with gdal_translate -a_srs EPSG:N");
+}
+
+/// GDAL goes around the globe in rasters of up to 360 degrees alone; rounded ones, and those that repeat a column, have a little more.
+void FrameRaster::closeCircle()
+{
+    Transform place{};
+    const OGRSpatialReference* const srs = top().GetSpatialRef();
+    if (!srs || !srs->IsGeographic() || top().GetGeoTransform(place.data()) != CE_None || place[1] <= 0.0 ||
+        place[2] != 0.0 || place[4] != 0.0)
+        return;
+    const double circle = osg::PI * 2.0 / srs->GetAngularUnits();
+    const double width = place[1] * top().GetRasterXSize();
+    // Maps that show their borders twice have many columns more.
+    if (width <= circle || width > circle + 2.5 * place[1]) return;
+    const int columns = static_cast<int>(std::lround(circle / place[1]));
+    const double east = place[0] + std::min(columns * place[1], circle);
+    translate({"-srcwin", "0", "0", std::to_string(columns), std::to_string(top().GetRasterYSize()),
+               "-a_ullr", exact(place[0]), exact(place[3]), exact(east),
+               exact(place[3] + place[5] * top().GetRasterYSize())});
 }
 
 /// Formats without tiles are read from the first pixel on, whatever is wanted of them.
@@ -357,17 +395,16 @@ std::function<std::optional<osg::Vec2d>(const osg::Vec2d&)> FrameRaster::placer(
 DatasetPtr FrameRaster::warped(const FrameCrs& crs, const osg::Vec2d& low, const osg::Vec2d& high, int width,
                                int height) const
 {
-    Arguments arguments{
-        "-of",           "MEM",           "-te", exact(low.x()),        exact(low.y()),
-        exact(high.x()), exact(high.y()), "-ts", std::to_string(width), std::to_string(height)};
     // Neighbours of a palette's and of classes' numbers have nothing to do with each other.
     const std::string resampling = kind == DataLayer::CLASS || _palette ? "near" : "bilinear";
     // An error far below half a texel, of interpolated transformations.
-    arguments.insert(arguments.end(), {"-t_srs", crs.definition, "-et", "0.01", "-r", resampling});
+    Arguments arguments{"-et", "0.01", "-r", resampling};
     if (kind == DataLayer::COLOR)
-        arguments.emplace_back("-dstalpha");
+        arguments.insert(arguments.end(), {"-of", "MEM", "-t_srs", crs.definition, "-te", exact(low.x()),
+                                           exact(low.y()), exact(high.x()), exact(high.y()), "-ts",
+                                           std::to_string(width), std::to_string(height), "-dstalpha"});
     else
-        arguments.insert(arguments.end(), {"-ot", "Float64", "-dstnodata", "nan"});
+        arguments.insert(arguments.end(), {"-dstnodata", "nan", "-wo", "INIT_DEST=NO_DATA"});
     if (size().x() * size().y() > mostRead)
     {
         const Below pixels = below(crs, low, high, width, height);
@@ -380,9 +417,11 @@ DatasetPtr FrameRaster::warped(const FrameCrs& crs, const osg::Vec2d& low, const
         const ReadingErrors errors;
         GDALWarpAppOptions* options = GDALWarpAppOptionsNew(listOf(arguments).List(), nullptr);
         GDALDatasetH source = GDALDataset::ToHandle(&top());
-        DatasetPtr result(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options, nullptr)));
+        DatasetPtr result = kind == DataLayer::COLOR ? nullptr : emptyNumbers(crs, low, high, width, height);
+        GDALDatasetH done = GDALWarp("", GDALDataset::ToHandle(result.get()), 1, &source, options, nullptr);
         GDALWarpAppOptionsFree(options);
-        if (result && errors.message.empty()) return result;
+        if (!result) result.reset(GDALDataset::FromHandle(done));
+        if (done && errors.message.empty()) return result;
         if (i == tries || !mayPass(errors.message)) failToRead(errors.message);
         std::this_thread::sleep_for(i * std::chrono::milliseconds(500));
     }

@@ -148,6 +148,7 @@ private:
     [[noreturn]] void failToRead(const std::string& message) const;
     void prepare(std::optional<DataLayer::Kind> wanted, bool placed);
     void checkPlace() const;
+    void closeCircle();
     /// Fails where so many of the file's pixels, of the overview that is taken, would have to be read that it takes too long.
     void checkPixels(double pixels) const;
     [[noreturn]] void failForOverviews() const;

@@ -222,6 +222,8 @@ DatasetChain RasterFile::open(const std::string& name, const char* const* option
                                            name + ":" + variableIn(parts[0]) + "."));
     }
     const GdalErrorScope quiet; // metadata may be read late
+    const char* const only = chain.top().GetRasterBand(1)->GetMetadataItem("NETCDF_VARNAME");
+    if (only && TimeSteps::hasColumnsFirst(name, only)) return TimeSteps::first(name, only);
     takeFirst(chain, name);
     assumeDegrees(chain, name);
     return chain;

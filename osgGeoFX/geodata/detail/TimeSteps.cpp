@@ -157,6 +157,12 @@ public:
         return chain;
     }
 
+    static bool areColumnsFirst(const GDALMDArray& array)
+    {
+        Axes axes;
+        return fits(array, axes, false) && axes.x < axes.y;
+    }
+
 private:
     /// A step of a variable whose places are in variables of their own. GDAL's reader of rasters, which is another one, knows these.
     DatasetChain curved(std::size_t index) const
@@ -197,6 +203,9 @@ private:
     {
         const auto numbers = _array->GetDimensions()[_axes.x]->GetIndexingVariable();
         if (!numbers || lower(numbers->GetUnit()).compare(0, 6, "degree") != 0) return false;
+        // Those of a curved grid may be called its axes.
+        const auto rows = _array->GetDimensions()[_axes.y]->GetIndexingVariable();
+        if (numbers->GetDimensionCount() != 1 || (rows && rows->GetDimensionCount() != 1)) return false;
         std::vector<double> x = numbersOf(_axes.x), y = numbersOf(_axes.y);
         for (std::size_t i = 1; i < x.size(); ++i)
             x[i] = x[i - 1] + std::remainder(x[i] - x[i - 1], 360.0);
@@ -617,6 +626,15 @@ DatasetChain TimeSteps::first(const std::string& file, const std::string& variab
     DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_MULTIDIM_RASTER));
     if (!dataset) return {};
     return DimensionSteps(file, std::move(dataset), variable, false).rasterOf(0);
+}
+
+bool TimeSteps::hasColumnsFirst(const std::string& file, const std::string& variable)
+{
+    const GdalErrorScope quiet;
+    const DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_MULTIDIM_RASTER));
+    const std::shared_ptr<GDALGroup> root = dataset ? dataset->GetRootGroup() : nullptr;
+    const std::shared_ptr<GDALMDArray> array = root ? root->OpenMDArray(variable) : nullptr;
+    return array && DimensionSteps::areColumnsFirst(*array);
 }
 
 std::unique_ptr<TimeSteps> TimeSteps::open(const std::string& file, const std::string& variable,

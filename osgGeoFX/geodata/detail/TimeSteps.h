@@ -30,6 +30,9 @@ public:
     /// file is no data set of several dimensions.
     static DatasetChain first(const std::string& file, const std::string& variable);
 
+    /// Whether a variable has its columns before its rows. GDAL's readers of rasters take it for turned.
+    static bool hasColumnsFirst(const std::string& file, const std::string& variable);
+
     virtual std::unique_ptr<FrameRaster> step(std::size_t index) = 0;
 
     std::vector<double> times;
