@@ -148,17 +148,35 @@ bool saysNothing(const LayerReading& reading)
     return reading.kind == DataLayer::COLOR ? !reading.color : !reading.value;
 }
 
-/// Of a raster in several frames, as one of the world, the part that has the place counts. Two rasters of one frame may have the same name.
-/// `frames`: the effect that has each reading.
-void dropOtherParts(std::vector<LayerReading>& readings, const std::vector<unsigned int>& frames)
+/// Whether two frames are those of two of the six parts that a raster of the world is cut into.
+bool arePartsOfTheWorld(const LocalOrigin& a, const LocalOrigin& b)
+{
+    const auto isPart = [](const LocalOrigin& origin)
+    {
+        return std::remainder(origin.longitude, osg::PI_2) == 0.0 &&
+               std::remainder(origin.latitude, osg::PI_2) == 0.0;
+    };
+    return isPart(a) && isPart(b) && (a.longitude != b.longitude || a.latitude != b.latitude);
+}
+
+/// Of a raster in several frames, as one of the world, the part that has the place counts; where two have it, the one on top. Two rasters of
+/// one frame may have the same name. `frames`: the effect that has each reading.
+void dropOtherParts(std::vector<LayerReading>& readings, const std::vector<const ProjectiveMappings*>& frames)
 {
     std::vector<LayerReading> kept;
     for (std::size_t i = 0; i < readings.size(); ++i)
     {
         bool isOtherPart = false;
-        for (std::size_t k = 0; k < readings.size() && saysNothing(readings[i]); ++k)
-            isOtherPart = isOtherPart || (frames[k] != frames[i] && readings[k].name == readings[i].name &&
-                                          (k < i || !saysNothing(readings[k])));
+        for (std::size_t k = 0; k < readings.size(); ++k)
+        {
+            if (frames[k] == frames[i] || readings[k].name != readings[i].name) continue;
+            if (saysNothing(readings[i]))
+                isOtherPart = isOtherPart || k < i || !saysNothing(readings[k]);
+            else
+                isOtherPart = isOtherPart ||
+                              (k < i && !saysNothing(readings[k]) &&
+                               arePartsOfTheWorld(frames[k]->getLocalOrigin(), frames[i]->getLocalOrigin()));
+        }
         if (!isOtherPart) kept.push_back(readings[i]);
     }
     readings = std::move(kept);
@@ -224,7 +242,7 @@ LayerProbe LayerProbe::at(EffectScene& scene, const osg::Vec3d& world)
     probe.world = world;
     const osg::ref_ptr<const osg::EllipsoidModel> ellipsoid = scene.ground().ellipsoid;
     LayerPlayer* const player = LayerPlayer::of(scene);
-    std::vector<unsigned int> frames;
+    std::vector<const ProjectiveMappings*> frames;
     // What is drawn last lies on top.
     for (unsigned int i = scene.getNumEffects(); i-- > 0;)
     {
@@ -238,7 +256,7 @@ LayerProbe LayerProbe::at(EffectScene& scene, const osg::Vec3d& world)
                 if (sequence->getLayer() == reading.mapping->getLayer()) reading.sequence = sequence;
             }
             probe.readings.push_back(std::move(reading));
-            frames.push_back(i);
+            frames.push_back(mappings);
         }
     }
     dropOtherParts(probe.readings, frames);

@@ -292,6 +292,36 @@ TEST(ProbeOnAGlobe, ReadsTheFootOnTheEllipsoid)
         << "the other side of the globe has the same x and y";
 }
 
+// The six parts of a raster of the world lie over each other by a hair; the one on top counts. Another raster may have its name.
+TEST(ProbeOnAGlobe, WherePartsOfTheWorldMeetThereIsOneValue)
+{
+    const osg::ref_ptr<osg::CoordinateSystemNode> globe = new osg::CoordinateSystemNode;
+    globe->setEllipsoidModel(new osg::EllipsoidModel);
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    scene->addChild(globe);
+    const auto addPart = [&](double longitude, double latitude, double value)
+    {
+        const osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;
+        mappings->setGeodeticOrigin(longitude, latitude);
+        const osg::ref_ptr<ProjectiveMapping> mapping =
+            mappingOf(values(2, [value](double, double) { return value; }), "world");
+        mapping->setRectangle({0.0, 0.0}, 5e6, 5e6);
+        mappings->addMapping(mapping);
+        scene->addEffect(mappings);
+    };
+    addPart(0.0, 0.0, 7.0);
+    addPart(osg::PI_2, 0.0, 8.0);
+    addPart(0.0, osg::PI_2, 9.0);
+    osg::Vec3d place;
+    osg::EllipsoidModel().convertLatLongHeightToXYZ(std::atan(std::sqrt(0.5)), osg::PI_4, 0.0, place.x(),
+                                                    place.y(), place.z());
+    std::vector<LayerReading> found = LayerProbe::at(*scene, place).readings;
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].text(), "world: 9");
+    addPart(osg::DegreesToRadians(40.0), osg::DegreesToRadians(30.0), 10.0);
+    EXPECT_EQ(LayerProbe::at(*scene, place).readings.size(), 2u);
+}
+
 namespace
 {
 
