@@ -211,3 +211,55 @@ TEST(ProxyFrustumTest, DepthsOfAGlobeAreThoseOfItsGround)
         }
     }
 }
+
+// Engines fit to their frustum what they drape.
+TEST(ProxyFrustumTest, OpensAsWideAsThePictureWhereNothingMoves)
+{
+    const Ground ground = earth(-500.0, 4400.0);
+    const osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
+    exaggeration->setFactor(1.0005);
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    const osg::ref_ptr<osg::CoordinateSystemNode> world = new osg::CoordinateSystemNode;
+    world->setEllipsoidModel(new osg::EllipsoidModel);
+    scene->addChild(world);
+    scene->addEffect(exaggeration);
+    const double up = std::tan(osg::DegreesToRadians(20.0)), right = 1.8 * up;
+    const osg::Matrixd projection = osg::Matrixd::perspective(40.0, 1.8, 1.0, 1e8);
+    for (const double height : {50e3, 900e3, 9e6})
+        for (const double pitch : {-90.0, -70.0, height > 1e6 ? -60.0 : -20.0})
+        {
+            SCOPED_TRACE(std::to_string(height) + " m, " + std::to_string(pitch) + " degrees");
+            osg::Matrixd place;
+            ground.ellipsoid->computeLocalToWorldTransformFromLatLongHeight(0.8, 0.0, height, place);
+            const osg::Matrixd view = osg::Matrixd::inverse(
+                osg::Matrixd::rotate(osg::DegreesToRadians(90.0 + pitch), osg::Vec3d(1.0, 0.0, 0.0)) * place);
+            const osg::ref_ptr<const DeformationChain> chain = scene->deformation(view, projection);
+            const ViewGeometry geometry(view, projection, ground);
+            osg::Polytope planes;
+            planes.setToUnitFrustum(true, true);
+            planes.transformProvidingInverse(projection);
+            Visibility sight;
+            Visibility::Camera camera;
+            camera.projection = projection;
+            camera.planes = &planes;
+            sight.set(camera);
+            const ProxyFrustum::Terrain terrain = {
+                osg::BoundingSphere(osg::Vec3(), 6.4e6f),
+                view,
+                osg::Matrixd(),
+                geometry.up,
+                ground,
+                {right, right, up, up},
+                chain->verticalMovement(ground.minHeight, ground.maxHeight)};
+            const ProxyFrustum proxy(
+                terrain, [&](const EyeBox& box) { return sight.outOfSight(*chain, box, sight.all()); },
+                [&](const EyeBox& box) { return sight.depthsOf(*chain, box); },
+                [&](const EyeBox& box) { return chain->movesVertically(box.ball()); });
+            const osg::Matrixd& opened = proxy.projection();
+            // The ground moves by 2 m: from 50 km, by less than a tenth of a pixel.
+            EXPECT_NEAR(opened(0, 0) / projection(0, 0), 1.0, height < 1e5 ? 1e-3 : 1e-9);
+            EXPECT_NEAR(opened(1, 1) / projection(1, 1), 1.0, height < 1e5 ? 1e-3 : 1e-9);
+            EXPECT_NEAR(opened(2, 0), 0.0, 1e-9);
+            EXPECT_NEAR(opened(2, 1), 0.0, height < 1e5 ? 1e-3 : 1e-9);
+        }
+}

@@ -228,9 +228,28 @@ ProxyFrustum::Reach ProxyFrustum::reachOf(std::size_t shape) const
     return most;
 }
 
-osg::Matrixd ProxyFrustum::projectionOf(std::size_t shape) const
+ProxyFrustum::Reach ProxyFrustum::withRoom(Reach reach)
 {
-    const Reach most = reachOf(shape);
+    for (std::size_t side = Left; side <= Top; ++side)
+        reach[side] += margin;
+    return reach;
+}
+
+ProxyFrustum::Reach ProxyFrustum::withPicture(const Reach& own) const
+{
+    // Less than from a picture's edge to its outermost pixel centers.
+    constexpr double slack = 0.3 * margin;
+    Reach reach = withRoom(own);
+    for (std::size_t side = Left; side <= Top; ++side)
+    {
+        const double seen = _terrain.picture[side];
+        if (std::isfinite(seen)) reach[side] = own[side] <= seen + slack ? seen : reach[side];
+    }
+    return reach;
+}
+
+osg::Matrixd ProxyFrustum::projectionOf(std::size_t shape, const Reach& most) const
+{
     if (_shapes[shape].parallel)
     {
         const double room =
@@ -240,10 +259,9 @@ osg::Matrixd ProxyFrustum::projectionOf(std::size_t shape) const
                                                           -most[Near] - room, most[Far] + room);
     }
     const double nearest = std::max(-most[Near] * (1.0 - margin), 1e-6 * most[Far]);
-    return _shapes[shape].frame *
-           osg::Matrixd::frustum(-(most[Left] + margin) * nearest, (most[Right] + margin) * nearest,
-                                 -(most[Bottom] + margin) * nearest, (most[Top] + margin) * nearest, nearest,
-                                 most[Far] * (1.0 + margin));
+    return _shapes[shape].frame * osg::Matrixd::frustum(-most[Left] * nearest, most[Right] * nearest,
+                                                        -most[Bottom] * nearest, most[Top] * nearest, nearest,
+                                                        most[Far] * (1.0 + margin));
 }
 
 void ProxyFrustum::setProjection()
@@ -251,18 +269,20 @@ void ProxyFrustum::setProjection()
     // With nothing to see: a look at a place where nothing is.
     _projection = osg::Matrixd::frustum(-1e-6, 1e-6, -1e-6, 1e-6, 1e9, 2e9);
     if (_cells.empty()) return;
-    // The narrower one of the two pyramids.
-    std::size_t best = Box;
-    double least = HUGE_VAL;
-    for (const std::size_t shape : {Own, Level})
+    const auto sizeOf = [](const Reach& reach)
     {
-        const Reach reach = reachOf(shape);
-        const double size = (reach[Left] + reach[Right]) * (reach[Bottom] + reach[Top]);
-        if (!(size < least)) continue;
-        least = size;
-        best = shape;
-    }
-    _projection = projectionOf(best);
+        return (reach[Left] + reach[Right]) * (reach[Bottom] + reach[Top]);
+    };
+    const Reach own = reachOf(Own);
+    const Reach level = reachOf(Level);
+    // Own sides have the advantage, so that rounding does not decide where the two are alike.
+    constexpr double muchNarrower = 0.8;
+    if (sizeOf(level) < muchNarrower * sizeOf(own))
+        _projection = projectionOf(Level, withRoom(level));
+    else if (std::isfinite(sizeOf(own)))
+        _projection = projectionOf(Own, withPicture(own));
+    else
+        _projection = projectionOf(Box, reachOf(Box));
 }
 
 void ProxyFrustum::setViewPoint()

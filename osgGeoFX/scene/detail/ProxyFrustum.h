@@ -99,7 +99,11 @@ private:
     /// By each of several measures, the coarsest one of the cells that reach furthest, if it is not yet fine; the last one first.
     std::vector<std::size_t> worstCells() const;
     Reach reachOf(std::size_t shape) const;
-    osg::Matrixd projectionOf(std::size_t shape) const;
+    /// Opened to the picture's own sides. Engines fit to their frustum what they drape, which is then as without effects where
+    /// nothing moves.
+    Reach withPicture(const Reach& own) const;
+    static Reach withRoom(Reach reach);
+    osg::Matrixd projectionOf(std::size_t shape, const Reach& most) const;
     void setProjection();
     void setViewPoint();
 
