@@ -25,6 +25,12 @@ double tilePixelSize(const osg::Node& tile, osg::NodeVisitor& visitor)
     return ours ? ours->pixelSize(tile) : -1.0;
 }
 
+bool isMovedVertically(const osg::Node& node, osg::NodeVisitor& visitor)
+{
+    auto* const ours = dynamic_cast<CompensatingCullVisitor*>(&visitor);
+    return !ours || ours->movesVertically(node);
+}
+
 std::optional<osg::Vec3d> raisedViewPoint(osg::NodeVisitor& visitor)
 {
     auto* const ours = dynamic_cast<CompensatingCullVisitor*>(&visitor);

@@ -50,6 +50,14 @@ OSGGEOFX_EXPORT bool isBoxOutOfSight(const osg::BoundingBox& box, const osg::Mat
     @ingroup scene */
 OSGGEOFX_EXPORT double tilePixelSize(const osg::Node& tile, osg::NodeVisitor& visitor);
 
+/** Whether effects move what is below a node up and down at most, so that distances to it are nearly those of what is undeformed, by
+    which an engine may blend its levels of detail. True where nothing is deformed, and false in passes, such as a close-up's.
+
+    `node`: as the tile of isTileOutOfSight(), which may be the whole terrain. True for visitors that are not the scene's own.
+
+    @ingroup scene */
+OSGGEOFX_EXPORT bool isMovedVertically(const osg::Node& node, osg::NodeVisitor& visitor);
+
 /** A view point from which all ground that the deformed picture shows is above the horizon, for things of an engine that are culled by
     the horizon of an undeformed globe, such as osgEarth's annotations: metres, in the frame of the scene's children. EffectScene::OPEN and
     PROXY need it.

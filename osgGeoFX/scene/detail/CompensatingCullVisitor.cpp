@@ -424,6 +424,15 @@ double CompensatingCullVisitor::pixelSize(const osg::Node& node)
     return ball.radius / std::max(std::abs(pixel), 1e-30) / static_cast<double>(getLODScale());
 }
 
+bool CompensatingCullVisitor::movesVertically(const osg::Node& node) const
+{
+    if (_mode.ours && _task.inPass) return false;
+    if (!_mode.ours || _mode.chain->empty()) return true;
+    const osg::BoundingSphere& bound = node.getBound();
+    return _mode.chain->movesVertically(
+        {inView(osg::Vec3d(bound.center())), static_cast<double>(bound.radius()) * _scale});
+}
+
 std::optional<osg::Vec3d> CompensatingCullVisitor::highPoint() const
 {
     if (!_task.open || !_mode.ours) return std::nullopt;

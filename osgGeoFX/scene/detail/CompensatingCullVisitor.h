@@ -140,6 +140,8 @@ public:
     bool leavesOut(const osg::BoundingBox& box, const osg::Matrixd& placement);
     /// The size in pixels of a node's deformed bounding sphere, as tilePixelSize() has it.
     double pixelSize(const osg::Node& node);
+    /// As osgGeoFX::isMovedVertically() has it.
+    bool movesVertically(const osg::Node& node) const;
     /// As osgGeoFX::raisedViewPoint() has it.
     std::optional<osg::Vec3d> highPoint() const;
 
