@@ -4,8 +4,11 @@
 
 #include <osgGeoFX/scene/EngineTiles.h>
 
+#include <osg/CullStack>
 #include <osg/Drawable>
 #include <osg/NodeVisitor>
+#include <osg/Plane>
+#include <osg/Polytope>
 #include <osg/Transform>
 #include <osgEarth/TerrainEngineNode>
 #include <osgEarth/TerrainTileNode>
@@ -74,10 +77,30 @@ public:
 
     void operator()(osg::Node* node, osg::NodeVisitor* visitor) override
     {
-        if (!engineVisitor || !isOut(*node)) traverse(node, visitor);
+        if (engineVisitor && isOut(*node))
+            touch(*node, *visitor);
+        else
+            traverse(node, visitor);
     }
 
 private:
+    /// Has a tile culled by osgEarth, which keeps it then. osgEarth unloads tiles that it does not meet, and a parent that is drawn by
+    /// its four tiles would load them again.
+    void touch(osg::Node& tile, osg::NodeVisitor& visitor)
+    {
+        auto* const culling = dynamic_cast<osg::CullStack*>(&visitor);
+        if (!culling) return;
+        osg::CullingSet& set = culling->getCurrentCullingSet();
+        osg::Polytope former = set.getFrustum(), nothing;
+        const osg::CullingSet::Mask formerMask = set.getCullingMask();
+        nothing.add(osg::Plane(0.0, 0.0, 0.0, -1e30));
+        set.setFrustum(nothing);
+        set.setCullingMask(osg::CullingSet::VIEW_FRUSTUM_CULLING);
+        traverse(&tile, &visitor);
+        set.setFrustum(former);
+        set.setCullingMask(formerMask);
+    }
+
     bool isOut(const osg::Node& tile) const
     {
         if (isTileOutOfSight(tile, *engineVisitor)) return true;

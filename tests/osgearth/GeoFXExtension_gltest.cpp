@@ -419,6 +419,32 @@ TEST_F(EarthMaps, LevelsByPixelsStopWhereNothingIsSeen)
     EXPECT_LE(differing(*draw(10.5, 0.2, 9000.0, 0.0, -32.0), *picture), 4);
 }
 
+// osgEarth unloads what no camera comes to, and a parent that needs it loads it again.
+TEST_F(EarthMaps, TilesThatAreNotShownStay)
+{
+    struct Arrivals : osgEarth::TerrainCallback
+    {
+        void onTileUpdate(const osgEarth::TileKey&, osg::Node*, osgEarth::TerrainCallbackContext&) override
+        {
+            ++count;
+        }
+        int count = 0;
+    };
+    for (const char* effect : {"<verticalExaggeration factor=\"2\"/>", "<panoramaMap/>"})
+    {
+        SCOPED_TRACE(effect);
+        ASSERT_TRUE(
+            show(extension(effect), "skirt_ratio=\"0.05\" min_expiry_time=\"0\" min_expiry_frames=\"3\""));
+        ASSERT_TRUE(draw(10.5, 0.2, 9000.0, 20.0, -12.0));
+        const osg::ref_ptr<Arrivals> arrivals = new Arrivals;
+        map().getTerrain()->addTerrainCallback(arrivals);
+        for (int i = 0; i < 3; ++i)
+            ASSERT_TRUE(draw(10.5, 0.2, 9000.0, 20.0, -12.0));
+        EXPECT_EQ(arrivals->count, 0);
+        map().getTerrain()->removeTerrainCallback(arrivals);
+    }
+}
+
 TEST_F(EarthMaps, UnitsAreOsgEarthsAndAreGivenBack)
 {
     const auto free = [&]
