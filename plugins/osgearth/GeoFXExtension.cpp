@@ -26,6 +26,7 @@
 #include <osgEarth/TerrainEngineNode>
 #include <osgEarth/URI>
 #include <osgEarth/Utils>
+#include <osgEarth/VirtualProgram>
 
 #include <osgUtil/CullVisitor>
 
@@ -58,6 +59,54 @@ public:
         // Draping goes by the eye.
         horizon->setEye(eye, visitor->asCullVisitor()->getProjectionMatrix());
     }
+};
+
+/** The defines of the terrain's programs in a frame.
+
+    Panorama maps lay on their painting what osgEarth drapes (VirtualProgramHost.cpp), where the program has osgEarth's function for it.
+
+    osgEarth hides the seams between its levels by moving vertices, by the distance of the undeformed ground. Where effects choose
+    levels by other distances, this would open the seams, so it is off there. Skirts hide them. */
+class TerrainDefines : public osg::NodeCallback
+{
+public:
+    void operator()(osg::Node* node, osg::NodeVisitor* visitor) override
+    {
+        osgUtil::CullVisitor* const cull = visitor->asCullVisitor();
+        const bool draped = cull && drapes(*cull);
+        const bool unmorphed = cull && !isMovedVertically(*node, *visitor);
+        if (draped) cull->pushStateSet(_draped);
+        if (unmorphed) cull->pushStateSet(_unmorphed);
+        traverse(node, visitor);
+        if (unmorphed) cull->popStateSet();
+        if (draped) cull->popStateSet();
+    }
+
+private:
+    static bool drapes(osgUtil::CullVisitor& cull)
+    {
+        using osgEarth::VirtualProgram;
+        for (const osgUtil::StateGraph* graph = cull.getCurrentStateGraph(); graph; graph = graph->_parent)
+        {
+            const VirtualProgram* program = VirtualProgram::get(graph->getStateSet());
+            if (program && program->getPolyShader("oe_overlay_fragment")) return true;
+        }
+        return false;
+    }
+
+    static osg::ref_ptr<osg::StateSet> defining(const std::vector<const char*>& names,
+                                                osg::StateAttribute::GLModeValue value)
+    {
+        osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+        for (const char* name : names)
+            state->setDefine(name, value);
+        return state;
+    }
+
+    const osg::ref_ptr<osg::StateSet> _draped = defining({"GEOFX_OSGEARTH_DRAPED"}, osg::StateAttribute::ON);
+    const osg::ref_ptr<osg::StateSet> _unmorphed =
+        defining({"OE_TERRAIN_MORPH_GEOMETRY", "OE_TERRAIN_MORPH_IMAGERY"},
+                 osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
 };
 
 // osgEarth's interfaces have no virtual destructors; nobody deletes by them.
@@ -137,6 +186,11 @@ public:
         _culling->add(*map);
         _raiser = new HorizonRaiser;
         map->getLayerNodeGroup()->addCullCallback(_raiser);
+        if (osgEarth::TerrainEngine* engine = map->getTerrainEngine())
+        {
+            _defines = new TerrainDefines;
+            engine->getNode()->addCullCallback(_defines);
+        }
         if (read.scene->background) addSky(*read.scene->background, *map, *scene);
         return true;
     }
@@ -145,6 +199,9 @@ public:
     {
         if (map && _raiser) map->getLayerNodeGroup()->removeCullCallback(_raiser);
         _raiser = nullptr;
+        if (map && _defines && map->getTerrainEngine())
+            map->getTerrainEngine()->getNode()->removeCullCallback(_defines);
+        _defines = nullptr;
         if (map && _culling) _culling->remove(*map);
         _culling = nullptr;
         if (map && _heights && map->getTerrainEngine())
@@ -176,6 +233,29 @@ private:
         return element;
     }
 
+    /// Tiles of osgEarth are so fine, for their distance, that the curve of a bend is smooth by them as they are. A bend asks for
+    /// finer ones where the file says so.
+    static void keepLevelsInBends(SceneElement& scene)
+    {
+        const auto isNamed = [](const SceneElement& element, const char* name)
+        {
+            return osgDB::equalCaseInsensitive(element.name, name);
+        };
+        for (SceneElement& part : scene.children)
+        {
+            if (!isNamed(part, "effects")) continue;
+            for (SceneElement& effect : part.children)
+            {
+                const bool bends = isNamed(effect, "birdsEyeView") || isNamed(effect, "pedestrianView") ||
+                                   isNamed(effect, "blendedView");
+                const bool states =
+                    std::any_of(effect.children.begin(), effect.children.end(),
+                                [&](const SceneElement& each) { return isNamed(each, "transitionDetail"); });
+                if (bends && !states) effect.children.push_back({"transitionDetail", "1", {}});
+            }
+        }
+    }
+
     SceneResult readScene() const
     {
         const osgEarth::Config& config = _config.getConfig();
@@ -192,7 +272,9 @@ private:
         const bool isAddress = file.find("://") != std::string::npos;
         std::string folder = osgDB::getFilePath(isAddress ? file : osgDB::getRealPath(file));
         if (folder.empty()) folder = osgDB::getCurrentWorkingDirectory();
-        SceneResult result = parseEngineScene(elementOf(config), text, file, folder);
+        SceneElement scene = elementOf(config);
+        keepLevelsInBends(scene);
+        SceneResult result = parseEngineScene(scene, text, file, folder);
         if (!result.scene) return result;
         result.errors = faultsOfFiles(*result.scene, folder, _options.get());
         result.scene->anywhere = isAllowedOutside(_options.get());
@@ -293,6 +375,7 @@ private:
     osg::ref_ptr<const osgDB::Options> _options;
     osg::observer_ptr<EffectScene> _scene; ///< it holds the map, which holds the extension
     osg::ref_ptr<HorizonRaiser> _raiser;
+    osg::ref_ptr<TerrainDefines> _defines;
     osg::ref_ptr<TileCulling> _culling;
     osg::ref_ptr<HeightWatch> _heights;
     osg::observer_ptr<osg::Group> _sky; ///< the kit's sky, and the scene; null for none

@@ -37,10 +37,18 @@ void geofx_osgearth_normal(inout vec4 color)
 }
 )";
 
+/// A panorama map paints ground anew, and so over the color that osgEarth has draped already.
 const char* const colorCall = R"(
+#pragma import_defines(GEOFX_PAINTED, GEOFX_OSGEARTH_DRAPED)
+#if defined(GEOFX_PAINTED) && defined(GEOFX_OSGEARTH_DRAPED)
+void oe_overlay_fragment(inout vec4 color);
+#endif
 void geofx_osgearth_color(inout vec4 color)
 {
     color = geofx_fragment(color, vec4(0.0));
+#if defined(GEOFX_PAINTED) && defined(GEOFX_OSGEARTH_DRAPED)
+    oe_overlay_fragment(color);
+#endif
 }
 )";
 
@@ -66,8 +74,6 @@ osg::ref_ptr<osg::StateSet> VirtualProgramHost::addition(const ShaderTexts& text
         program->getTemplate()->addBindUniformBlock(name, binding);
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
     state->setAttribute(program, osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
-    for (const char* morphing : {"OE_TERRAIN_MORPH_GEOMETRY", "OE_TERRAIN_MORPH_IMAGERY"})
-        state->setDefine(morphing, osg::StateAttribute::OFF | osg::StateAttribute::PROTECTED);
     return state;
 }
 

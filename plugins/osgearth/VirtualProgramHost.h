@@ -13,9 +13,6 @@ namespace osgGeoFX
     logarithmic depth. It has one for fragments before they are lit, which turns their normals as the effects do, and one behind
     all light, which gives the color to the effects.
 
-    osgEarth hides the seams between its levels by moving vertices, by the distance of the undeformed ground. Where effects
-    choose the levels, this would open the seams, so it is off there; skirts hide them (GeoFXExtension).
-
     Thread-safe. */
 class VirtualProgramHost : public ShaderHost
 {
