@@ -28,6 +28,9 @@ namespace
 /// the list.
 constexpr std::size_t RUN = 3 * 64;
 
+/// From a continent down to metres, for both directions of a triangle.
+constexpr int mostHalvings = 44;
+
 /// Where a ray meets a triangle: the distance in units of the direction, negative where it misses, and the shares of the
 /// second and third corner.
 struct Meeting
@@ -93,6 +96,63 @@ std::vector<Meeting> meetParts(const osg::Vec3d& origin, const osg::Vec3d& direc
     return all;
 }
 
+Ball ballAround(const std::array<osg::Vec3d, 3>& corners)
+{
+    Ball ball = {(corners[0] + corners[1] + corners[2]) / 3.0, 0.0};
+    for (const osg::Vec3d& each : corners)
+        ball.radius = std::max(ball.radius, (each - ball.center).length());
+    return ball;
+}
+
+/// A triangle in eye space, flat and as it is drawn.
+struct Piece
+{
+    std::array<osg::Vec3d, 3> flat, drawn;
+};
+
+/// Divides a triangle until its pieces follow the deformation, and calls an action with each. `meets`: whether a ball where things are drawn
+/// matters.
+template<typename Meets, typename Action>
+void followCurve(const Piece& piece, int halvings, const DeformationChain& chain, const Meets& meets,
+                 const Action& action)
+{
+    if (!meets(chain.bound(ballAround(piece.flat)))) return;
+    // Each edge is judged by itself: so a neighbour has it divided at the same places, and no ray slips through.
+    constexpr double sag = 1e-3, shortest = 4e-3;
+    std::size_t longest = 3;
+    double most = 0.0, off = 0.0;
+    std::array<osg::Vec3d, 3> flat, drawn;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const std::size_t k = (i + 1) % 3;
+        flat[i] = (piece.flat[i] + piece.flat[k]) * 0.5;
+        drawn[i] = chain.deform(flat[i]);
+        const double length = (piece.flat[i] - piece.flat[k]).length();
+        const double distance = std::max(drawn[i].length(), 1.0);
+        const double here = (drawn[i] - (piece.drawn[i] + piece.drawn[k]) * 0.5).length();
+        off = std::max(off, here);
+        if (!(here > sag * distance && length > std::max(shortest * distance, most))) continue;
+        longest = i;
+        most = length;
+    }
+    if (longest == 3 || halvings == 0)
+    {
+        action(piece);
+        return;
+    }
+    // Bounds of a deformation are wide. What lies between the corners bulges about as far as the edges do.
+    Ball ball = ballAround(piece.drawn);
+    ball.radius += off;
+    if (!meets(ball)) return;
+    for (const std::size_t end : {longest, (longest + 1) % 3})
+    {
+        Piece part = piece;
+        part.flat[end] = flat[longest];
+        part.drawn[end] = drawn[longest];
+        followCurve(part, halvings - 1, chain, meets, action);
+    }
+}
+
 /// The engine of the scene at or above a node; null for none.
 const ShaderHost* hostOf(const osg::Node& node)
 {
@@ -134,6 +194,7 @@ osgUtil::Intersector* DeformedLineIntersector::clone(osgUtil::IntersectionVisito
 {
     auto* result = new DeformedLineIntersector(_origin, _direction);
     result->_root = root();
+    result->_curved = _curved;
     if (auto* ours = dynamic_cast<DeformedIntersectionVisitor*>(&visitor))
     {
         result->_chain = &ours->chain();
@@ -230,7 +291,20 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
     const auto* ours = dynamic_cast<const DeformedIntersectionVisitor*>(&visitor);
     const bool divides = ours && !OwnPrograms::isOwn(ours->_deformation.program) &&
                          PatchTwins::mayHave(*drawable) && DividedTriangles::within(*_chain, whole);
-    const auto note = [&](std::size_t i, const Meeting& met)
+    const auto flatOf = [&](std::size_t i)
+    {
+        std::array<osg::Vec3d, 3> flat;
+        for (std::size_t k = 0; k < 3; ++k)
+            flat[k] = mesh.positions()[mesh.corners()[i + k]] * _modelView;
+        return flat;
+    };
+    const bool curved = _curved && !references && DividedTriangles::curves(*_chain, whole);
+    const auto meetsBall = [&](const Ball& ball)
+    {
+        return meets(ball);
+    };
+    // A meeting with the triangle from corner i on, or with a piece of it.
+    const auto note = [&](std::size_t i, const std::array<osg::Vec3d, 3>& piece, const Meeting& met)
     {
         const unsigned int* corner = &mesh.corners()[i];
         // Nothing is seen at the eye itself, where a cylindrical map gathers what lies opposite of its picture.
@@ -247,8 +321,7 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
         osg::Matrixd toLocal;
         toLocal.invert(_modelView);
         const osg::Vec3d* first = mesh.positions().data();
-        const osg::Vec3d a = first[corner[0]] * _modelView, ab = first[corner[1]] * _modelView - a,
-                         ac = first[corner[2]] * _modelView - a;
+        const osg::Vec3d a = piece[0], ab = piece[1] - a, ac = piece[2] - a;
         const osg::Vec3d flat = a + ab * met.u + ac * met.v;
         osg::Vec3d eye = references ? flat : _chain->undeform(hit.deformed);
         // Where a deformation gathers ground in one point, the flat triangle that is drawn may lie where no ground goes.
@@ -270,16 +343,11 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
         for (std::size_t i = begin; i < end; i += 3)
         {
             const unsigned int* corner = &mesh.corners()[i];
-            std::array<osg::Vec3d, 3> flat;
             int parts = 1;
-            if (divides)
+            if (divides && !curved)
             {
-                for (std::size_t k = 0; k < 3; ++k)
-                    flat[k] = mesh.positions()[corner[k]] * _modelView;
-                Ball ball = {(flat[0] + flat[1] + flat[2]) / 3.0, 0.0};
-                for (const osg::Vec3d& each : flat)
-                    ball.radius = std::max(ball.radius, (each - ball.center).length());
-                if (!meets(_chain->bound(ball))) continue;
+                const std::array<osg::Vec3d, 3> flat = flatOf(i);
+                if (!meets(_chain->bound(ballAround(flat)))) continue;
                 for (std::size_t k = 0; k < 3; ++k)
                     parts = std::max(parts, DividedTriangles::parts(*_chain, flat[k], flat[(k + 1) % 3]));
             }
@@ -287,11 +355,26 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
                 deform(corner[k]);
             if (parts > 1)
             {
-                for (const Meeting& met : meetParts(_origin, _direction, *_chain, parts, flat))
-                    note(i, met);
+                for (const Meeting& met : meetParts(_origin, _direction, *_chain, parts, flatOf(i)))
+                    note(i, flatOf(i), met);
                 continue;
             }
-            note(i, meet(_origin, _direction, deformed[corner[0]], deformed[corner[1]], deformed[corner[2]]));
+            const std::array<osg::Vec3d, 3> drawn = {deformed[corner[0]], deformed[corner[1]],
+                                                     deformed[corner[2]]};
+            if (curved)
+            {
+                followCurve(
+                    {flatOf(i), drawn}, mostHalvings, *_chain, meetsBall,
+                    [&](const Piece& piece) {
+                        note(i, piece.flat,
+                             meet(_origin, _direction, piece.drawn[0], piece.drawn[1], piece.drawn[2]));
+                    });
+            }
+            else
+            {
+                const Meeting met = meet(_origin, _direction, drawn[0], drawn[1], drawn[2]);
+                if (met.distance >= 0.0) note(i, flatOf(i), met);
+            }
         }
     }
 }

@@ -43,6 +43,11 @@ public:
     /// A ray in eye space, metres. The direction need not have unit length.
     DeformedLineIntersector(const osg::Vec3d& origin, const osg::Vec3d& direction);
 
+    /// Whether it meets triangles as bends curve them, within a thousandth of the distance from the eye, not straight between their
+    /// deformed corners: where a coarse tile spans a bend, these straight triangles are kilometres from all ground. So it finds the
+    /// ground where finer tiles will show it. False by default.
+    void setCurved(bool on) { _curved = on; }
+
     /// All intersections, the nearest first.
     const std::vector<Intersection>& intersections() const;
 
@@ -70,6 +75,7 @@ private:
     OwnPrograms* _programs = nullptr;
     osg::Matrixd _modelView;
     double _scale = 1.0;
+    bool _curved = false;
     std::vector<Intersection> _found;
     bool _sorted = true;
 };

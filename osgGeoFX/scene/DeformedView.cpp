@@ -124,6 +124,18 @@ bool DeformedView::maySee(const osg::BoundingSphered& ball) const
 std::optional<DeformedLineIntersector::Intersection> DeformedView::pick(double x, double y,
                                                                         osg::Node::NodeMask mask) const
 {
+    return meet(x, y, mask, false);
+}
+
+std::optional<DeformedLineIntersector::Intersection> DeformedView::pickCurved(double x, double y,
+                                                                              osg::Node::NodeMask mask) const
+{
+    return meet(x, y, mask, true);
+}
+
+std::optional<DeformedLineIntersector::Intersection>
+DeformedView::meet(double x, double y, osg::Node::NodeMask mask, bool curved) const
+{
     osg::Matrixd inverse;
     inverse.invert(_projection);
     const double ndcX = 2.0 * x / _width - 1.0;
@@ -134,6 +146,7 @@ std::optional<DeformedLineIntersector::Intersection> DeformedView::pick(double x
     const bool perspective = _projection(3, 3) == 0.0;
     const osg::Vec3d origin = perspective ? osg::Vec3d() : onNear;
     const osg::ref_ptr<DeformedLineIntersector> ray = new DeformedLineIntersector(origin, direction);
+    ray->setCurved(curved);
     const osg::ref_ptr<DeformedIntersectionVisitor> visitor =
         new DeformedIntersectionVisitor(ray, chainAt(ndcX), _modelView, _lodScale);
     visitor->setTraversalMask(mask);

@@ -49,6 +49,10 @@ public:
     /// The point that a pixel shows; empty for the sky. `mask`: only nodes with one of these bits are visited.
     std::optional<DeformedLineIntersector::Intersection> pick(double x, double y,
                                                               osg::Node::NodeMask mask = ~0u) const;
+    /// As pick(), of the ground as bends curve it (DeformedLineIntersector::setCurved()). Where tiles are still too coarse to show the
+    /// curve, the picture has another point there, but this place lies on the ground. For what goes on about a place, as a drag does.
+    std::optional<DeformedLineIntersector::Intersection> pickCurved(double x, double y,
+                                                                    osg::Node::NodeMask mask = ~0u) const;
     /// The place that a pixel shows: radians, and metres above the database's zero height. False for the sky and
     /// outside the projection.
     bool unproject(double x, double y, const Georeference& reference, double& longitude, double& latitude,
@@ -67,6 +71,9 @@ public:
     const osg::Matrixd& modelView() const { return _modelView; }
 
 private:
+    std::optional<DeformedLineIntersector::Intersection> meet(double x, double y, osg::Node::NodeMask mask,
+                                                              bool curved) const;
+
     osg::ref_ptr<EffectScene> _scene;
     Ground _ground;
     /// The deformation of the camera that would draw a place of the picture, x from −1 to 1.

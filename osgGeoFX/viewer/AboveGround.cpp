@@ -101,6 +101,7 @@ double AboveGround::rise(EffectScene& scene, const osg::Matrixd& view, const osg
     const ViewGeometry geometry(picture.modelView(), camera.getProjectionMatrix(), picture.ground());
     const osg::Vec3d& up = geometry.up;
     const osg::ref_ptr<DeformedLineIntersector> ray = new DeformedLineIntersector(up * reach, -up);
+    ray->setCurved(true);
     const osg::ref_ptr<GroundVisitor> visitor = new GroundVisitor(ray, picture.chain(), picture.modelView(),
                                                                   static_cast<double>(camera.getLODScale()));
     scene.getTerrain()->traverse(*visitor);

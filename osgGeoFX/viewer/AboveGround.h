@@ -24,7 +24,7 @@ namespace osgGeoFX
     Buildings and other things that keep their shape (RigidParts, RigidReference) hold nobody up. Recorded paths
     (osgGA::AnimationPathManipulator) and panorama maps (PanoramaManipulator) are left as they are.
 
-    It looks at the tiles that are loaded, at the level that is drawn. A look costs a ray through them; frames in which neither the
+    It looks at the tiles that are loaded, at the level that is drawn, and follows their triangles along bends. A look costs a ray through them; frames in which neither the
     camera nor an effect has changed cost nothing, but for four looks a second for new tiles. One object serves one view.
     @ingroup viewer */
 class OSGGEOFX_EXPORT AboveGround : public osgGA::CameraManipulator

@@ -176,7 +176,7 @@ protected:
         if (!shown || action._type != Manipulator::ACTION_GOTO)
             return Manipulator::handlePointAction(action, x, y, view);
         const osg::Vec2d pixel = pixelOf(x, y);
-        const auto hit = shown->pick(pixel.x(), pixel.y(), this->_intersectTraversalMask);
+        const auto hit = shown->pickCurved(pixel.x(), pixel.y(), this->_intersectTraversalMask);
         if (!hit) return true;
         const double factor = action.getDoubleOption(Manipulator::OPTION_GOTO_RANGE_FACTOR, 1.0);
         const osg::Vec3d place = drawnBelow(*shown, hit->world);
@@ -266,7 +266,7 @@ private:
     bool isHolding() const { return this->_lastPointOnEarth != osg::Vec3d(); }
     void hold(const DeformedView& shown, const osg::Vec2d& pixel)
     {
-        const auto hit = shown.pick(pixel.x(), pixel.y(), this->_intersectTraversalMask);
+        const auto hit = shown.pickCurved(pixel.x(), pixel.y(), this->_intersectTraversalMask);
         if (hit) this->_lastPointOnEarth = hit->world;
     }
     /// Lets a pixel show the place that is held, if one is and it can be done.
@@ -337,7 +337,8 @@ private:
         const auto shown = picture();
         if (!shown) return;
         const osg::Viewport& port = *camera()->getViewport();
-        const auto hit = shown->pick(0.5 * port.width(), 0.5 * port.height(), this->_intersectTraversalMask);
+        const auto hit =
+            shown->pickCurved(0.5 * port.width(), 0.5 * port.height(), this->_intersectTraversalMask);
         const double distance = hit ? -hit->deformed.z() : 0.0;
         const auto& settings = *this->getSettings();
         if (distance > 0.0 && distance >= settings.getMinDistance() && distance <= settings.getMaxDistance())

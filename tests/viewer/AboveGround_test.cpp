@@ -179,6 +179,36 @@ TEST_F(AboveGroundTest, TheEyeStaysAboveAGroundThatFoldsUpBelowIt)
     EXPECT_GT(groundOverEye(), 10.0) << "without it the eye is below the ground that is seen";
 }
 
+// As before finer tiles have come.
+TEST_F(AboveGroundTest, TrianglesThatSpanABendAreFollowedAlongIt)
+{
+    scene->removeChildren(0, scene->getNumChildren());
+    scene->addChild(HeightMesh{
+        [](double, double)
+        {
+            return 50.0;
+        }}.mesh(3));
+    scene->addEffect(new PedestrianView);
+    viewer.getCamera()->setViewMatrix(lookingNorth({700.0, 200.0, 400.0}, -25.0));
+    EXPECT_EQ(AboveGround::rise(*scene, viewer.getCamera()->getViewMatrix(), *viewer.getCamera(), 2.0), 0.0);
+    viewer.getCamera()->setViewMatrix(lookingNorth({700.0, 200.0, 20.0}, -25.0));
+    EXPECT_NEAR(AboveGround::rise(*scene, viewer.getCamera()->getViewMatrix(), *viewer.getCamera(), 2.0),
+                32.0, 0.1);
+    viewer.getCamera()->setViewMatrix(lookingNorth({700.0, 200.0, 400.0}, -25.0));
+    const DeformedView picture(*scene, *viewer.getCamera());
+    for (const double y : {20.0, 150.0, 360.0, 600.0})
+    {
+        const auto drawn = picture.pick(0.5 * WIDTH, y), place = picture.pickCurved(0.5 * WIDTH, y);
+        ASSERT_TRUE(place) << y;
+        EXPECT_NEAR(place->world.z(), 50.0, 2.0) << y;
+        osg::Vec2d shown;
+        ASSERT_TRUE(picture.project(place->world, shown));
+        EXPECT_LT((shown - osg::Vec2d(0.5 * WIDTH, y)).length(), 0.1);
+        EXPECT_FALSE(drawn && std::abs(drawn->world.z() - 50.0) < 20.0)
+            << "the triangles are too small for this test";
+    }
+}
+
 TEST_F(AboveGroundTest, BendsThatFollowTheEyeAreLookedAtAgain)
 {
     addBirdsEye();

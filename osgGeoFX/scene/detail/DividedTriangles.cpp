@@ -51,6 +51,17 @@ bool DividedTriangles::within(const DeformationChain& chain, const EyeBox& box)
     return false;
 }
 
+bool DividedTriangles::curves(const DeformationChain& chain, const EyeBox& box)
+{
+    Ball here = box.ball();
+    for (const auto& each : chain.snapshots())
+    {
+        if (tessellated(*each) && each->reach(here) == DeformationSnapshot::Reach::Curved) return true;
+        here = each->bound(here);
+    }
+    return false;
+}
+
 int DividedTriangles::parts(const DeformationChain& chain, osg::Vec3d from, osg::Vec3d to)
 {
     osg::Vec2d sag;

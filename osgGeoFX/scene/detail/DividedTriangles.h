@@ -14,6 +14,8 @@ struct DividedTriangles
     static bool wanted(const DeformationChain& chain);
     /// Whether some edge in a box may be divided; conservative.
     static bool within(const DeformationChain& chain, const EyeBox& box);
+    /// Whether a bend of the chain curves something in a box, divided or not; conservative.
+    static bool curves(const DeformationChain& chain, const EyeBox& box);
     /// Into how many parts an edge must be divided so that what it misses of the curve is below a tenth of a pixel of a usual picture; 15 at
     /// most, as on the GPU.
     static int parts(const DeformationChain& chain, osg::Vec3d from, osg::Vec3d to);
