@@ -132,6 +132,9 @@ public:
     /// Whether the ground at a position lies beyond the end of what the deformation shows, in the pictures of all cameras. A
     /// RigidReference that stands there is not drawn. False by default.
     virtual bool isBeyond(const osg::Vec3d&) const { return false; }
+    /// Whether the GPU draws nothing of ground within a sphere that belongs to an engine with coarse tiles
+    /// (ShaderTexts: GEOFX_HOST_COARSE_TILES). False by default.
+    virtual bool isAside(const Ball&) const { return false; }
     /// Whether hides() or complaint() can ever give an answer. Where this is false, culling need not ask them and tests
     /// fewer boxes. True by default.
     virtual bool looksAtBoxes() const { return true; }

@@ -130,6 +130,7 @@ bool DeformationChain::hides(const Ball& ball, const osg::Vec2d& room) const
     {
         if (i > 0) current = _snapshots[i - 1]->bound(current);
         if (_snapshots[i]->hides(current, room)) return true;
+        if (_coarseTiles && _snapshots[i]->isAside(current)) return true;
     }
     return false;
 }
@@ -138,6 +139,7 @@ bool DeformationChain::hides(const EyeBox& box, const osg::Vec2d& room) const
 {
     if (!_looksAtBoxes) return false;
     if (_snapshots.front()->hidesBox(box, room)) return true;
+    if (_coarseTiles && _snapshots.front()->isAside(box.ball())) return true;
     if (_snapshots.size() == 1) return false;
     Ball current = box.ball();
     for (std::size_t i = 1; i < _snapshots.size(); ++i)

@@ -37,6 +37,8 @@ public:
         _tileError = error;
         _ownTiles = ownTiles;
     }
+    /// Whether hides() is true of what an engine's coarse tiles do not draw (DeformationSnapshot::isAside()). False by default.
+    void setCoarseTiles(bool coarse) { _coarseTiles = coarse; }
     bool empty() const { return _snapshots.empty(); }
     const std::vector<osg::ref_ptr<const DeformationSnapshot>>& snapshots() const { return _snapshots; }
 
@@ -97,6 +99,7 @@ private:
     double _tileEdge = 0.0;
     double _tileError = 0.0;
     bool _ownTiles = true;
+    bool _coarseTiles = false;
 };
 
 /// Whether a subgraph is deformed. This depends on the define GEOFX_DEFORMATION and on the program, in the state sets

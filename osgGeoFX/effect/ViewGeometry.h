@@ -31,6 +31,8 @@ struct OSGGEOFX_EXPORT Ground
     /// The latitude of the middle of a geocentric database of the kit, radians; otherwise 45° north. Effects that
     /// depend on the climate use it.
     double latitude = 0.25 * osg::PI;
+    bool coarseTiles =
+        false; ///< whether an engine leaves tiles coarse where they are out of sight (ShaderHost)
     osg::observer_ptr<const osg::Node> terrain; ///< the root of the kit's database; null for other databases
 };
 

@@ -74,6 +74,9 @@ public:
         time. The scene calls it once for its own texts and once for those of each pass, and keeps what it gets. Null,
         the default, if use() does all. */
     virtual osg::ref_ptr<osg::StateSet> addition(const ShaderTexts& texts);
+    /// Whether the engine puts GEOFX_HOST_COARSE_TILES before the texts (ShaderTexts), so that tiles of which nothing is drawn then are
+    /// culled. False by default.
+    virtual bool leavesTilesCoarse() const { return false; }
     /// Whether a program has the texts and calls geofx_vertex(), by itself or by an addition(). The attribute is of type
     /// PROGRAM, of any class.
     virtual bool draws(const osg::StateAttribute& program) const = 0;

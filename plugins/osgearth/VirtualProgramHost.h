@@ -18,6 +18,7 @@ class VirtualProgramHost : public ShaderHost
 {
 public:
     osg::ref_ptr<osg::StateSet> addition(const ShaderTexts& texts) override;
+    bool leavesTilesCoarse() const override { return true; }
     bool draws(const osg::StateAttribute& program) const override;
 
 protected:

@@ -121,6 +121,20 @@ GEOFX_INLINE Number geofx_panoramaFadeFrom(geofx_Panorama view, Length from, Len
     return t * t * (3 - 2 * t);
 }
 
+// How far behind the eye nothing is drawn of an engine's coarse tiles.
+GEOFX_INLINE Length geofx_panoramaBehind(geofx_Panorama view)
+{
+    return 3 * view.horizon + 2 / view.across + Length(2e5);
+}
+
+// How far to each side nothing is drawn of them. Such ground comes into the picture behind the end alone, where it is gathered. Its
+// height has shrunk to less than a twentieth then.
+GEOFX_INLINE Length geofx_panoramaAside(geofx_Panorama view)
+{
+    Length behind = geofx_panoramaBehind(view);
+    return view.cylinder.ring > 0 ? behind : min(behind, 20 / view.across);
+}
+
 // The share of its height that an object at a distance s shows: 1 up to the horizon.
 GEOFX_INLINE Number geofx_panoramaFade(geofx_Panorama view, Length s)
 {

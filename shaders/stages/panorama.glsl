@@ -64,9 +64,10 @@ vec3 SLOT_placeOf(vec3 position)
 bool SLOT_isAside(vec3 place)
 {
     geofx_Panorama view = SLOT_view();
-    float far = 3.0 * view.horizon + 2.0 / view.across + 2e5;
     bool hasEye = length(view.directionX) > 1e-4;
-    return hasEye && view.plain == 0.0 && place.y < view.end && max(abs(place.x), -place.y) > far;
+    bool gathered = place.y > 2.0 * view.end - view.horizon;
+    return hasEye && view.plain == 0.0 && !gathered &&
+           (abs(place.x) > geofx_panoramaAside(view) || -place.y > geofx_panoramaBehind(view));
 }
 #endif
 

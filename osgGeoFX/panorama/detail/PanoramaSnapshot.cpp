@@ -499,6 +499,17 @@ bool PanoramaSnapshot::hides(const Ball& ball, const osg::Vec2d& room) const
                1.0 - beside - room.y();
 }
 
+bool PanoramaSnapshot::isAside(const Ball& ball) const
+{
+    if (_view.plain > 0.0 || _view.cylinder.ring > 0.0 || !(glm::length(_view.directionX) > 1e-4))
+        return false;
+    const Extent extent = extentOf(ball);
+    // The GPU computes in single precision.
+    constexpr double room = 1.02;
+    return !(extent.turned > mostTurned) &&
+           std::abs(extent.place.x) - extent.reach > room * glsl::geofx_panoramaAside(_view);
+}
+
 bool PanoramaSnapshot::placesOf(const EyeBox& box, const Extent& extent, Places& places) const
 {
     if (extent.turned > mostTurned || extent.cylinder.leavesPicture) return false;
@@ -530,13 +541,10 @@ bool PanoramaSnapshot::placesOf(const EyeBox& box, const Extent& extent, Places&
 void PanoramaSnapshot::pictureOf(const Places& places, glm::dvec3& low, glm::dvec3& high) const
 {
     // Beyond the end, places go to the middle.
-    low.x = _view.across * places.low.x;
-    high.x = _view.across * places.high.x;
-    if (places.high.y > _view.end)
-    {
-        low.x = std::min(low.x, 0.0);
-        high.x = std::max(high.x, 0.0);
-    }
+    const double before = glsl::geofx_panoramaFadeFrom(_view, _view.end, places.low.y);
+    const double behind = glsl::geofx_panoramaFadeFrom(_view, _view.end, places.high.y);
+    low.x = _view.across * places.low.x * (places.low.x < 0.0 ? before : behind);
+    high.x = _view.across * places.high.x * (places.high.x > 0.0 ? before : behind);
     // Heights and Eq. 1 move a place up or down in the picture.
     // Their scale changes one way up to the horizon, and falls behind it.
     double least = HUGE_VAL, most = -HUGE_VAL;

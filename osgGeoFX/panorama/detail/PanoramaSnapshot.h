@@ -52,6 +52,7 @@ public:
     double longestEdge(const Ball& ball, double tolerance) const override;
     bool hides(const Ball& ball, const osg::Vec2d& room) const override;
     bool isBeyond(const osg::Vec3d& position) const override;
+    bool isAside(const Ball& ball) const override;
     bool hidesBox(const EyeBox& box, const osg::Vec2d& room) const override;
     std::optional<double> viewDistance(const Ball& ball) const override;
     std::string complaint(const EyeBox& box) const override;

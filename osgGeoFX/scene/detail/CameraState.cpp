@@ -80,6 +80,7 @@ osg::ref_ptr<DeformationChain> CameraSnapshots::chain(const Ground& ground) cons
 {
     osg::ref_ptr<DeformationChain> result = new DeformationChain;
     result->setTiles(ground.tileEdge, ground.tileError, ground.terrain.get() != nullptr);
+    result->setCoarseTiles(ground.coarseTiles);
     for (const Placed& placed : _all)
     {
         if (placed.snapshot) result->add(placed.snapshot);

@@ -3,6 +3,7 @@
 #include <osgGeoFX/scene/detail/GroundFinder.h>
 
 #include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/scene/ShaderHost.h>
 
 #include <osg/Math>
 
@@ -105,6 +106,8 @@ Ground GroundFinder::find(const EffectScene& scene, const osg::Group& terrain, c
         if (info->tileCells > 0) ground.tileEdge = 2.0 / info->tileCells;
     }
     addStated(scene.getGround(), ground);
+    const ShaderHost* const host = scene.getShaderHost();
+    ground.coarseTiles = host && host->leavesTilesCoarse();
     return ground;
 }
 
