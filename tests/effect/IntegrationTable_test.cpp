@@ -13,8 +13,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -151,4 +154,53 @@ TEST(IntegrationTable, HasThePrefixesOfAllNames)
     for (const Row& row : readTable())
         rows += contains(row[1], "`geofx_…`") || contains(row[1], "`GEOFX_…`") ? 1 : 0;
     EXPECT_EQ(rows, 2);
+}
+
+// A table that says how osgEarth's parts fare is worth as much as the tests behind it.
+TEST(IntegrationTable, PartsOfOsgEarthAreShownByTests)
+{
+    std::set<std::string> tests, named;
+    const std::regex test(R"(TEST(?:_F|_P)?\((\w+),\s*(\w+)\))"), name("`(\\w+)[.](\\w+)`");
+    for (const auto& entry : std::filesystem::directory_iterator(GEOFX_SOURCE_DIR "/tests/osgearth"))
+    {
+        std::ifstream file(entry.path());
+        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        for (std::sregex_iterator each(text.begin(), text.end(), test), end; each != end; ++each)
+            tests.insert(each->str(1) + "." + each->str(2));
+    }
+    ASSERT_GT(tests.size(), 20u);
+    std::ifstream file(GEOFX_SOURCE_DIR "/osgGeoFX/Integration.md");
+    bool inside = false;
+    int parts = 0;
+    for (std::string line; std::getline(file, line);)
+    {
+        if (line.rfind("| of osgEarth | how |", 0) == 0)
+        {
+            inside = true;
+            continue;
+        }
+        inside = inside && line.rfind("| ", 0) == 0;
+        if (!inside || line.rfind("| ---", 0) == 0) continue;
+        ++parts;
+        const std::string shownBy = line.substr(line.rfind('|', line.size() - 2));
+        const bool isOpen = contains(shownBy, "| no test |");
+        EXPECT_NE(isOpen, std::regex_search(shownBy, name)) << line;
+        for (std::sregex_iterator each(shownBy.begin(), shownBy.end(), name), end; each != end; ++each)
+        {
+            const std::string full = each->str(1) + "." + each->str(2);
+            named.insert(full);
+            EXPECT_TRUE(tests.count(full)) << full << " is no test";
+        }
+        const bool saysHow = contains(line, " | follows | ") || contains(line, " | rigid | ") ||
+                             contains(line, " | left alone | ");
+        EXPECT_TRUE(saysHow) << line;
+    }
+    EXPECT_GT(parts, 20);
+    for (const std::string& each : tests)
+    {
+        if (each.rfind("ThingsOnGround.", 0) == 0)
+        {
+            EXPECT_TRUE(named.count(each)) << each << " is of no part in the table";
+        }
+    }
 }
