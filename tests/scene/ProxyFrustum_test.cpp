@@ -7,6 +7,7 @@
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/scene/ShaderHost.h>
 #include <osgGeoFX/scene/detail/GlobeHorizon.h>
 #include <osgGeoFX/scene/detail/GroundShell.h>
 #include <osgGeoFX/scene/detail/ProxyFrustum.h>
@@ -262,4 +263,52 @@ TEST(ProxyFrustumTest, OpensAsWideAsThePictureWhereNothingMoves)
             EXPECT_NEAR(opened(2, 0), 0.0, 1e-9);
             EXPECT_NEAR(opened(2, 1), 0.0, height < 1e5 ? 1e-3 : 1e-9);
         }
+}
+
+// All ground behind a map's end comes to one point of the picture. What comes there from far beside the picture has no height left.
+TEST(ProxyFrustumTest, CoarseTilesFarBesideAPanoramaMapAreHidden)
+{
+    class Host : public ShaderHost
+    {
+    public:
+        bool draws(const osg::StateAttribute&) const override { return false; }
+        bool leavesTilesCoarse() const override { return true; }
+    };
+    const Ground ground = earth(-500.0, 4400.0);
+    constexpr double latitude = 0.8, height = 4500.0;
+    osg::Matrixd place;
+    ground.ellipsoid->computeLocalToWorldTransformFromLatLongHeight(latitude, 0.0, height, place);
+    const osg::Matrixd view = osg::Matrixd::inverse(
+        osg::Matrixd::rotate(osg::DegreesToRadians(70.0), osg::Vec3d(1.0, 0.0, 0.0)) * place);
+    const osg::Matrixd projection = osg::Matrixd::perspective(40.0, 1.8, 1.0, 1e8);
+    // How many of the tiles, 1 km wide, are hidden, in a row across the map's end that is so far beside the middle.
+    const auto hiddenIn = [&](bool coarse, double beside)
+    {
+        const osg::ref_ptr<EffectScene> scene = new EffectScene;
+        const osg::ref_ptr<osg::CoordinateSystemNode> world = new osg::CoordinateSystemNode;
+        world->setEllipsoidModel(new osg::EllipsoidModel);
+        scene->addChild(world);
+        scene->addEffect(new PanoramaMap);
+        if (coarse) scene->setShaderHost(new Host);
+        const osg::ref_ptr<const DeformationChain> chain = scene->deformation(view, projection);
+        int hidden = 0;
+        for (int i = 0; i < 20; ++i)
+        {
+            const osg::Matrixd tile = osg::Matrixd::translate(beside, 1000.0 * i, -height) * place * view;
+            EyeBox box;
+            box.center = osg::Vec3d() * tile;
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                osg::Vec3d half;
+                half[axis] = axis < 2 ? 500.0 : 100.0;
+                box.half[axis] = osg::Matrixd::transform3x3(half, tile);
+            }
+            hidden += chain->hides(box, {}) ? 1 : 0;
+        }
+        return hidden;
+    };
+    EXPECT_EQ(hiddenIn(true, 150e3), 20);
+    EXPECT_LT(hiddenIn(false, 150e3), 20);
+    EXPECT_EQ(hiddenIn(true, 0.0), hiddenIn(false, 0.0));
+    EXPECT_LT(hiddenIn(true, 0.0), 10);
 }
