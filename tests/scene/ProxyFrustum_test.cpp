@@ -47,6 +47,17 @@ double outside(const EyeBox& box, const osg::Vec3d& point)
     return most;
 }
 
+/// Lets what a projection shows be in sight. `planes` must live as long as `sight`.
+void look(const osg::Matrixd& projection, osg::Polytope& planes, Visibility& sight)
+{
+    planes.setToUnitFrustum(true, true);
+    planes.transformProvidingInverse(projection);
+    Visibility::Camera camera;
+    camera.projection = projection;
+    camera.planes = &planes;
+    sight.set(camera);
+}
+
 } // namespace
 
 TEST(GroundShell, BoxesHoldTheGroundOfTheirBlocks)
@@ -168,13 +179,8 @@ TEST(ProxyFrustumTest, DepthsOfAGlobeAreThoseOfItsGround)
             const ViewGeometry geometry(view, projection, ground);
             const GlobeHorizon horizon(*chain, geometry, {});
             osg::Polytope planes;
-            planes.setToUnitFrustum(true, true);
-            planes.transformProvidingInverse(projection);
             Visibility sight;
-            Visibility::Camera camera;
-            camera.projection = projection;
-            camera.planes = &planes;
-            sight.set(camera);
+            look(projection, planes, sight);
             const auto isOut = [&](const EyeBox& box)
             {
                 return horizon.hides(box.ball()) || sight.outOfSight(*chain, box, sight.all());
@@ -237,13 +243,8 @@ TEST(ProxyFrustumTest, OpensAsWideAsThePictureWhereNothingMoves)
             const osg::ref_ptr<const DeformationChain> chain = scene->deformation(view, projection);
             const ViewGeometry geometry(view, projection, ground);
             osg::Polytope planes;
-            planes.setToUnitFrustum(true, true);
-            planes.transformProvidingInverse(projection);
             Visibility sight;
-            Visibility::Camera camera;
-            camera.projection = projection;
-            camera.planes = &planes;
-            sight.set(camera);
+            look(projection, planes, sight);
             const ProxyFrustum::Terrain terrain = {
                 osg::BoundingSphere(osg::Vec3(), 6.4e6f),
                 view,
