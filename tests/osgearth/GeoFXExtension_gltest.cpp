@@ -430,11 +430,11 @@ TEST_F(EarthMaps, TilesThatAreNotShownStay)
         }
         int count = 0;
     };
-    for (const char* effect : {"<verticalExaggeration factor=\"2\"/>", "<panoramaMap/>"})
+    for (const char* effect : {"", "<verticalExaggeration factor=\"2\"/>", "<panoramaMap/>"})
     {
         SCOPED_TRACE(effect);
-        ASSERT_TRUE(
-            show(extension(effect), "skirt_ratio=\"0.05\" min_expiry_time=\"0\" min_expiry_frames=\"3\""));
+        ASSERT_TRUE(show(*effect ? extension(effect) : "",
+                         "skirt_ratio=\"0.05\" min_expiry_time=\"0\" min_expiry_frames=\"3\""));
         ASSERT_TRUE(draw(10.5, 0.2, 9000.0, 20.0, -12.0));
         const osg::ref_ptr<Arrivals> arrivals = new Arrivals;
         map().getTerrain()->addTerrainCallback(arrivals);
